@@ -11,6 +11,9 @@
 typedef struct element_fibres {
     const materials_map *map;
     const float *first, *second; /* elements x 3; NULL: none */
+    /* elements, of a frame: of muscles in series with springs, c - 1 (physics/muscle_series.h). NULL: not known, so
+     * their stress is that where nothing moves. The caller's to set. */
+    const double *contractile, *mixcontractile;
 } element_fibres;
 
 element_fibres element_fibres_of(const model *m, const materials_map *map);

@@ -124,6 +124,10 @@ typedef struct known {
       "displacement from rest")                                                                                        \
     X("node.velocity", MODEL_F64, "m/s", "node", 3, 3, KNOWN_FRAME, KNOWN_FINITE, 0, 0, "tled-run or msds-run",        \
       "velocity")                                                                                                      \
+    X("element.contractile", MODEL_F64, "1", "element", 1, 1, KNOWN_FRAME, KNOWN_FINITE, 0, 0, "tled-run",             \
+      "of a muscle with vmax: stretch of the fibre without that of the spring, less 1")                                \
+    X("element.mixcontractile", MODEL_F64, "1", "element", 1, 1, KNOWN_FRAME, KNOWN_FINITE, 0, 0, "tled-run",          \
+      "the same of element.mix")                                                                                       \
     X("element.stress", MODEL_F32, "Pa", "element", 6, 6, KNOWN_FRAME | KNOWN_NAN, KNOWN_FINITE, 0, 0,                 \
       "tled-run or sinew results", "Cauchy stress at its centre: xx yy zz xy yz xz; nan where it is inside out")       \
     X("element.stress.mises", MODEL_F32, "Pa", "element", 1, 1, KNOWN_FRAME | KNOWN_NAN, KNOWN_FINITE, 0, 0,           \

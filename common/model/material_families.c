@@ -56,11 +56,15 @@ fibre_numbers material_fibres(const material *a)
 bool material_muscle(const material *a, double curve[MUSCLE_NUMBERS])
 {
     memset(curve, 0, MUSCLE_NUMBERS * sizeof *curve);
-    if (a->passive == 0 && a->optimum == 1)
+    if (a->passive == 0 && a->optimum == 1 && a->vmax == 0)
         return false;
     curve[MUSCLE_LESS] = 1 / a->optimum - 1;
     curve[MUSCLE_PASSIVE] = a->passive * a->peak / a->optimum;
     curve[MUSCLE_STIFFENING] = a->stiffening;
     curve[MUSCLE_STRAIGHT] = a->straight - 1;
+    if (a->vmax > 0) {
+        curve[MUSCLE_SPRING] = a->peak / (a->optimum * a->optimum * a->series);
+        curve[MUSCLE_FASTEST] = a->optimum * a->vmax;
+    }
     return true;
 }

@@ -105,17 +105,17 @@ static void drop_unused(model *m)
 }
 
 /* Bits of the optional keys that are given. */
-static unsigned optional_keys(const material *of)
+static uint64_t optional_keys(const material *of)
 {
-    unsigned keys = 0;
+    uint64_t keys = 0;
     for (int k = LAW_OPTIONAL; k < LAW_ALL_KEYS; k++)
-        keys |= (unsigned)!isnan(material_edit_stored(of, k)) << k;
+        keys |= (uint64_t)!isnan(material_edit_stored(of, k)) << k;
     return keys;
 }
 
 int materials_put(model *m, const char *const *name, const material *of, int64_t count, err *e)
 {
-    unsigned used = 1U << LAW_density | 1U << LAW_peak;
+    uint64_t used = UINT64_C(1) << LAW_density | UINT64_C(1) << LAW_peak;
     for (int64_t i = 0; i < count; i++)
         used |= material_edit_keys(&of[i]) | optional_keys(&of[i]);
     if (model_axis_add(m, "material", count, e) || !model_add(m, "material.name", e) ||

@@ -24,7 +24,8 @@ typedef struct material {
     const law_row *law;
     double value[LAW_OWN_KEYS]; /* of the law's keys: LAW_E and so on, in their units; nan where it has no such key */
     double density, peak;       /* kg/m3, Pa */
-    double optimum, passive, stiffening, straight; /* of its muscles; 0: not given, so the usual value */
+    double optimum, passive, stiffening, straight; /* of its muscles; 0: not given, so the usual value, */
+    double vmax, series;                           /* as of these (1/s, 1) */
     const fibre_kind *fibre;                       /* of its families of fibres; NULL: none */
     double families[LAW_FIBRE_KEYS_COUNT];         /* of that kind's keys: LAW_eta and so on; nan where not given */
 } material;

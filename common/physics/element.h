@@ -13,6 +13,7 @@
 #include "physics/form_maths.h"
 #include "physics/hourglass.h"
 #include "physics/muscle_curves.h"
+#include "physics/muscle_series.h"
 
 #ifdef ELEMENT_FORCES_ALONE /* numbers without bits have no powers, so no fibres that take them */
 typedef struct fibre_set fibre_set;
@@ -38,15 +39,18 @@ typedef struct element_law {
     real c[FORM_NUMBERS], hourglass[HOURGLASS_NUMBERS];
 } element_law;
 
-/* Unit direction at rest; the active stress (Pa): activation times peak, over the optimum; the muscle's curves. */
+/* Unit direction at rest; the active stress (Pa): activation times peak, over the optimum; the muscle's curves; what it
+ * is in series with, if anything. */
 typedef struct element_fibre {
     element_vector along;
     real tension;
     muscle_curves curves;
+    muscle_series series;
 } element_fibre;
 
-/* What of a fibre is looked at: nothing; its active stress, with the curves at 0; all. To steppers a constant. */
-enum { ELEMENT_NO_MUSCLE, ELEMENT_MUSCLE, ELEMENT_CURVED_MUSCLE };
+/* What of a fibre is looked at: nothing; its active stress, with the curves at 0; the curves; all. To steppers mostly a
+ * constant. */
+enum { ELEMENT_NO_MUSCLE, ELEMENT_MUSCLE, ELEMENT_CURVED_MUSCLE, ELEMENT_SERIAL_MUSCLE };
 
 /* The modes of one component: sums and differences along x, then y, then z. */
 ELEMENT_FUNCTION element_modes element_modes_of(element_corners u)
@@ -133,20 +137,44 @@ ELEMENT_FUNCTION element_tensor element_curved(element_tensor h, element_fibre f
     return element_along(sigma / REAL_SELECT(lambda > 0, lambda, REAL_ZERO + 1), m, a);
 }
 
+/* Likewise of a muscle in series with a spring, which then pulls in place of the active stress. */
+ELEMENT_FUNCTION element_tensor element_serial(element_tensor h, element_fibre fibre)
+{
+    const element_vector a = fibre.along, m = element_fibre_now(h, a);
+    const real lambda = element_length(m), strain = element_fibre_strain(h, a, lambda);
+    const real beyond = muscle_beyond(fibre.curves, strain);
+    const real active = REAL_SELECT(fibre.series.stiffness > 0, muscle_spring(fibre.series, strain),
+                                    fibre.tension * muscle_force_length(lambda + lambda * fibre.curves.less));
+    const real sigma = active + fibre.curves.passive * muscle_passive(fibre.curves, beyond);
+    return element_along(sigma / REAL_SELECT(lambda > 0, lambda, REAL_ZERO + 1), m, a);
+}
+
+/* Its contractile element at the end of a step, at H (muscle_contract). */
+ELEMENT_FUNCTION real element_contract(element_tensor h, element_fibre fibre, real most)
+{
+    const real lambda = element_length(element_fibre_now(h, fibre.along));
+    const real tension = fibre.tension * muscle_force_length(lambda + lambda * fibre.curves.less);
+    return muscle_contract(fibre.series, element_fibre_strain(h, fibre.along, lambda), tension, most);
+}
+
 #ifdef REAL_IS_DOUBLE
-/* From numbers of a model: a0; its muscle's curves; what of the element is the muscle's. Without active stress. */
+/* From numbers of a model: a0; its muscle's curves; what of the element is the muscle's. Without active stress, and of
+ * a contractile element as at rest. */
 ELEMENT_FUNCTION element_fibre element_fibre_of(const float *along, double share, const double *curve)
 {
     const element_fibre fibre = {
         {along[0], along[1], along[2]},
         0,
-        {curve[MUSCLE_LESS], share * curve[MUSCLE_PASSIVE], curve[MUSCLE_STIFFENING], curve[MUSCLE_STRAIGHT]}};
+        {curve[MUSCLE_LESS], share * curve[MUSCLE_PASSIVE], curve[MUSCLE_STIFFENING], curve[MUSCLE_STRAIGHT]},
+        {share * curve[MUSCLE_SPRING], 0}};
     return fibre;
 }
 
 /* What of such a fibre is to be looked at: ELEMENT_MUSCLE and so on. */
 ELEMENT_FUNCTION int element_fibre_which(element_fibre of)
 {
+    if (of.series.stiffness != 0)
+        return ELEMENT_SERIAL_MUSCLE;
     if (of.curves.passive != 0 || of.curves.less != 0)
         return ELEMENT_CURVED_MUSCLE;
     return of.tension != 0 ? ELEMENT_MUSCLE : ELEMENT_NO_MUSCLE;
@@ -170,6 +198,8 @@ ELEMENT_FUNCTION double element_fibre_energy(element_tensor h, element_fibre fib
 ELEMENT_FUNCTION element_tensor element_muscle(element_tensor h, element_fibre fibre, int which)
 {
 #ifndef ELEMENT_FORCES_ALONE
+    if (which == ELEMENT_SERIAL_MUSCLE)
+        return element_serial(h, fibre);
     if (which == ELEMENT_CURVED_MUSCLE)
         return element_curved(h, fibre);
 #endif

@@ -376,8 +376,8 @@ const char *law_key_unit(law_key key)
 
 double law_key_usual(law_key key)
 {
-    static const double usual[LAW_ALL_KEYS] = {
-        [LAW_optimum] = 1, [LAW_passive] = 0, [LAW_stiffening] = 6.6, [LAW_straight] = 1.4};
+    static const double usual[LAW_ALL_KEYS] = {[LAW_optimum] = 1,    [LAW_passive] = 0, [LAW_stiffening] = 6.6,
+                                               [LAW_straight] = 1.4, [LAW_vmax] = 0,    [LAW_series] = .04};
     return (int)key >= (int)LAW_OPTIONAL && (int)key < (int)LAW_ALL_KEYS ? usual[key] : NAN;
 }
 

@@ -39,14 +39,16 @@
 #define LAW_DENSITY_KEY(X) X(density, "kg/m3", 1e-3, 1e6, "mass density at rest")
 
 /* The same of what every material may have, whatever its law. Those after peak are optional: they shape the curves of a
- * muscle (muscle_curves.h), and have a usual value where they are not given. */
+ * muscle (muscle_curves.h, muscle_series.h), and have a usual value where they are not given. */
 #define LAW_COMMON_KEYS(X)                                                                                             \
     LAW_DENSITY_KEY(X)                                                                                                 \
     X(peak, "Pa", 0, 1e12, "peak active stress of its muscles")                                                        \
     X(optimum, "1", .5, 2, "stretch at which its muscles are strongest, 1 if not given")                               \
     X(passive, "1", 0, 10, "factor of the passive stress of its muscles, over peak, 0 if not given")                   \
     X(stiffening, "1", .1, 20, "exponent of the passive stress of its muscles, 6.6 if not given")                      \
-    X(straight, "1", 1, 2, "stretch over optimum from which passive stress is linear, 1.4 if not given")
+    X(straight, "1", 1, 2, "stretch over optimum from which passive stress is linear, 1.4 if not given")               \
+    X(vmax, "1/s", 0, 1e3, "lengths by which its muscles shorten in a second without load; no limit if not given")     \
+    X(series, "1", 1e-3, 1, "strain at peak stress of the spring in series with muscles of vmax, 0.04 if not given")
 
 /* The same of families of fibres, by their kind (fibre_kind.h). */
 #define LAW_FIBRE_KEYS(X)                                                                                              \
@@ -69,7 +71,7 @@ enum {
 };
 #undef LAW_KEY_INDEX
 
-_Static_assert((int)LAW_ALL_KEYS <= 32, "keys are bits of an unsigned");
+_Static_assert((int)LAW_OWN_KEYS <= 32, "keys of laws are bits of an unsigned");
 
 enum { LAW_GROUPS = 5 }; /* the most groups of keys of any law */
 

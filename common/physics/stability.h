@@ -17,7 +17,10 @@ typedef struct step_matrix {
 } step_matrix;
 
 /* Of a muscle's stress: with m = F a0, l = |m| and t(l) = sigma(l)/l (muscle_curves.h), P = t m (x) a0, so
- *     A = t I (x) a0 a0 + (t'/l) (m (x) a0) (x) (m (x) a0). */
+ *     A = t I (x) a0 a0 + (t'/l) (m (x) a0) (x) (m (x) a0).
+ * Of one in series with a spring the matrix is no less than A, whatever the contractile element has of the length:
+ * along the fibre it has the spring's stiffness even if it is slack, and across it the most that the spring can pull
+ * with (muscle_series.h). */
 typedef struct stability_muscle {
     element_vector now; /* m */
     double t, slope;    /* slope: t'/l */
@@ -26,11 +29,11 @@ typedef struct stability_muscle {
 /* Whether a fibre pulls at all. */
 ELEMENT_FUNCTION int stability_pulls(element_fibre fibre)
 {
-    return fibre.tension != 0 || fibre.curves.passive != 0;
+    return fibre.tension != 0 || fibre.curves.passive != 0 || fibre.series.stiffness != 0;
 }
 
-/* d sigma / d lambda, Pa: what the muscle alone stiffens by along its fibre; below 0 where its force falls. strain:
- * lambda - 1. */
+/* d sigma / d lambda, Pa, where nothing moves: what the muscle alone stiffens by along its fibre; below 0 where its
+ * force falls. strain: lambda - 1. */
 ELEMENT_FUNCTION double stability_fibre_slope(element_fibre fibre, double lambda, double strain)
 {
     const muscle_curves c = fibre.curves;
@@ -55,12 +58,17 @@ ELEMENT_FUNCTION stability_muscle stability_muscle_at(element_tensor h, element_
     stability_muscle s = {element_fibre_now(h, fibre.along), 0, 0};
     const muscle_curves c = fibre.curves;
     const double l = element_length(s.now), strain = element_fibre_strain(h, fibre.along, l);
+    const double spring = fibre.series.stiffness;
     if (!(l > 0))
         return s;
+    if (spring > 0)
+        fibre.tension *= MUSCLE_SERIES_MOST;
     s.t = (fibre.tension * muscle_force_length(l + l * c.less) +
            c.passive * muscle_passive(c, muscle_beyond(c, strain))) /
           l;
-    s.slope = (stability_fibre_slope(fibre, l, strain) - s.t) / (l * l);
+    if (spring > 0)
+        fibre.tension = 0;
+    s.slope = (stability_fibre_slope(fibre, l, strain) - s.t + spring) / (l * l);
     return s;
 }
 

@@ -258,13 +258,22 @@ void results_energies(results *r, const double *u, double *to)
 {
     r->u = u;
     r->activation = NULL;
+    r->muscles.contractile = r->muscles.mixcontractile = NULL;
     look(r, to);
+}
+
+static const double *doubles_of(const frame *f, const char *name)
+{
+    const model_array *a = frame_find(f, name);
+    return a ? a->f64 : NULL;
 }
 
 static void take_frame(results *r, const frame *f)
 {
     const model_array *activation = frame_find(f, arrays[RESULTS_ACTIVATION]);
     r->u = frame_find(f, "node.displacement")->f64;
+    r->muscles.contractile = doubles_of(f, "element.contractile");
+    r->muscles.mixcontractile = doubles_of(f, "element.mixcontractile");
     r->activation = activation ? activation->f64 : NULL;
 }
 

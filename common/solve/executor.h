@@ -19,6 +19,7 @@
     X(HISTORY, "history of elements, which the law needs")                                                             \
     X(MIXTURES, "elements mixed of two volumes")                                                                       \
     X(CURVES, "muscles with a passive stress or an optimum")                                                           \
+    X(SERIES, "muscles in series with a spring: vmax=")                                                                \
     X(FIBRES, "fibres that resist being stretched")
 
 enum executor_feature {
@@ -35,7 +36,7 @@ enum { /* as bits */
 };
 
 /* All executors have these features, so messages about the choice do not name them. */
-enum { EXECUTOR_USUAL = EXECUTOR_MIXTURES | EXECUTOR_CURVES | EXECUTOR_FIBRES };
+enum { EXECUTOR_USUAL = EXECUTOR_MIXTURES | EXECUTOR_CURVES | EXECUTOR_FIBRES | EXECUTOR_SERIES };
 
 typedef struct executor {
     const char *device; /* "cpu" or "cuda", as the user says it */

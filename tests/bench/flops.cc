@@ -181,7 +181,7 @@ flops flops_of_element(hourglass_kind kind, int is_active, const double u[24], d
                                  {unknown(3e-6), unknown(2e-6), unknown(1.5e-6)},
                                  unknown(1 / 2.4e-8)};
     const element_law law = {{unknown(1000), unknown(50000)}, {unknown(.01), unknown(.02), unknown(.03), unknown(.04)}};
-    const element_fibre fibre = {{unknown(.6), unknown(0), unknown(.8)}, unknown(3000), {0, 0, 0, 0}};
+    const element_fibre fibre = {{unknown(.6), unknown(0), unknown(.8)}, unknown(3000), {0, 0, 0, 0}, {0, 0}};
     for (int i = 0; i < 24; i++)
         from[i / 8]->at[i % 8] = unknown(u[i]);
     force = element_force(FORM_NEO_HOOKEAN, kind, at, shape, law, fibre, is_active);

@@ -57,9 +57,9 @@ tled-run < small.gz --contract |muscle_a
 tled-run < small --contract=|muscle_a
 tled-run < small -c mu|muscle_a
 tled-run < small -c muscle_a=0.4,|muscle_a
-tled-run < small -m T|Tissue.E Tissue.angle Tissue.density Tissue.eta Tissue.fibre Tissue.k1 Tissue.k2 Tissue.kappa Tissue.law Tissue.nu Tissue.optimum Tissue.passive Tissue.peak Tissue.stiffening Tissue.straight
+tled-run < small -m T|Tissue.E Tissue.angle Tissue.density Tissue.eta Tissue.fibre Tissue.k1 Tissue.k2 Tissue.kappa Tissue.law Tissue.nu Tissue.optimum Tissue.passive Tissue.peak Tissue.series Tissue.stiffening Tissue.straight Tissue.vmax
 tled-run < small -m tissue.l|tissue.law
-tled-run < rubber -m |tissue.K tissue.angle tissue.c01 tissue.c10 tissue.density tissue.eta tissue.fibre tissue.k1 tissue.k2 tissue.kappa tissue.law tissue.nu tissue.optimum tissue.passive tissue.peak tissue.stiffening tissue.straight
+tled-run < rubber -m |tissue.K tissue.angle tissue.c01 tissue.c10 tissue.density tissue.eta tissue.fibre tissue.k1 tissue.k2 tissue.kappa tissue.law tissue.nu tissue.optimum tissue.passive tissue.peak tissue.series tissue.stiffening tissue.straight tissue.vmax
 tled-run < face.txt -c |
 tled-run < cut -c |
 tled-run < sub -c |

@@ -79,6 +79,8 @@ hgo='-m tissue.fibre=hgo -m tissue.k1=2e4 -m tissue.k2=2'
     same "the law fung" "$T/muscle.sinew" -g 0,2,-9.81 -m tissue.law=fung -m tissue.c=500 -m tissue.bf=8 -m tissue.bt=2 -m tissue.bfs=4 -m tissue.nu=.45
     same "a passive muscle with fibres" "$T/muscle.sinew" -c all=0.5 -g 0,0,-9.81 $hgo -m tissue.passive=0.05 -m tissue.optimum=0.9
     logged "a passive muscle with fibres" $hgo -m tissue.passive=0.05 -m tissue.optimum=0.9
+    same "a muscle with vmax" "$T/muscle.sinew" -c all=0.5 -g 0,0,-9.81 -m tissue.vmax=10
+    logged "a muscle with vmax" -m tissue.vmax=10
     run "$T/muscle.sinew" -q -d cpu -n 500 -c all=0.5 $hgo -m tissue.kappa=.1 >"$T/cpu"
     run "$T/muscle.sinew" -q -d cuda -n 500 -c all=0.5 $hgo -m tissue.kappa=.1 >"$T/cuda"
     check "and the CPU's bytes" sinew diff --only node.displacement,node.velocity "$T/cpu" "$T/cuda"

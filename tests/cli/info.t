@@ -64,7 +64,7 @@ fails 1 "a slip in one" "no key 'muscle.nam'; did you mean 'muscle.name'" sinew 
 
 is "$(lines group.name "$small")" "skin|edge|lip|" "groups of surfaces, each once"
 
-fibres='tissue.optimum tissue.passive tissue.stiffening tissue.straight tissue.fibre tissue.eta tissue.k1 tissue.k2 tissue.kappa tissue.angle'
+fibres='tissue.optimum tissue.passive tissue.stiffening tissue.straight tissue.vmax tissue.series tissue.fibre tissue.eta tissue.k1 tissue.k2 tissue.kappa tissue.angle'
 # shellcheck disable=SC2046,SC2086 # words
 is "$(lines material.key "$small")" "$(printf '%s|' tissue.law tissue.E tissue.nu tissue.density tissue.peak $fibres Tissue.law Tissue.E Tissue.nu Tissue.density Tissue.peak $(echo "$fibres" | sed s/tissue/Tissue/g))" \
     "what -m can set"

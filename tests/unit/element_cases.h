@@ -59,7 +59,7 @@ static element_field affine(double f[3][3], const double origin[3])
 
 static element_field force_of(element_field u, double kappa, double tension, const double along[3])
 {
-    element_fibre fibre = {{R(along[0]), R(along[1]), R(along[2])}, R(tension), {R(0), R(0), R(0), R(0)}};
+    element_fibre fibre = {{R(along[0]), R(along[1]), R(along[2])}, R(tension), {R(0), R(0), R(0), R(0)}, {R(0), R(0)}};
     return element_force(FORM_NEO_HOOKEAN, HOURGLASS_ISOTROPIC, u, box_shape(), tissue(kappa), fibre, tension != 0);
 }
 

@@ -162,7 +162,7 @@ static void test_range(form f, const double *c, double strain)
     for (int i = 0; i < 10 * TRIALS; i++) {
         const double side[3] = {.01 + .005 * number(), .01 + .005 * number(), .01};
         const element_tensor h = gradient_by_chance(strain);
-        element_fibre fibre = {{number(), number(), number()}, 2000 * number(), {0, 0, 0, 0}};
+        element_fibre fibre = {{number(), number(), number()}, 2000 * number(), {0, 0, 0, 0}, {0, 0}};
         const element_fibre none = {0};
         const double length = element_length(fibre.along);
         fibre.along.x /= length, fibre.along.y /= length, fibre.along.z /= length;

@@ -1,6 +1,6 @@
 /* Muscles with curves of their own in runs: a bar that is active beyond its optimum, whose elements part into long and
  * short ones until the passive curve holds them; the stable step at rest; forces of mixed elements; what such muscles
- * need of an executor.
+ * need of an executor; and those in series with springs: whether a state is all that they have, and where they begin.
  */
 // needs: tled/*/*.c
 #include "tled/run/account.h"
@@ -11,6 +11,8 @@
 
 /* Both ends held. */
 static const block bar = {{12, 2, 2}, {.005, .005, .005}, 3000, .45, 1000, 3e5, 0, 1, 1, {1, 0, 0}, 0, false};
+
+static double vmax; /* of the first material of models that are made; 0: not given */
 
 /* A muscle that contracts by the level, with an optimum and a passive stress; 0: not given. */
 static void muscle_make(bench *b, const block *what, double level, double optimum, double passive)
@@ -27,6 +29,10 @@ static void muscle_make(bench *b, const block *what, double level, double optimu
             (model_find(&b->m, "material.passive") ? model_find(&b->m, "material.passive")
                                                    : block_array(&b->m, "material.passive"))
                 ->f64[i] = passive;
+    }
+    if (vmax > 0) {
+        const double values[2] = {vmax, 0};
+        block_values(&b->m, "material.vmax", values);
     }
     snprintf(contract, sizeof contract, what->mixed ? "m=%.17g,n=%.17g" : "m=%.17g", level, level / 2);
     if (level > 0)
@@ -171,6 +177,61 @@ static void test_forces(const tled_executor *device, double tolerance)
     bench_free(&b);
 }
 
+/* What of a state there is, saved and restored, gives the same bytes again. */
+static void test_restored(const tled_executor *device)
+{
+    bench b;
+    block what = bar;
+    what.mixed = true;
+    muscle_make(&b, &what, 1, .9, .05);
+    const tled_problem *p = &b.problem;
+    const tled_plan plan = {.rate = 4e5}, later = {.rate = 4e5, .first = 300};
+    double *first = calloc((size_t)p->nodes * 6 + (size_t)p->elements * 2, sizeof *first);
+    double *second = calloc((size_t)p->nodes * 3, sizeof *second), *taken = first + 6 * p->nodes, most = 0;
+    tled_state *state = device->create(p, b.setup.threads, &b.e);
+    ok(p->fields.count == TLED_MIXCONTRACTILE + 1, "mixed muscles with springs have two fields more");
+    bench_must(!state || device->step(state, &plan, 300, &b.e) || device->save(state, &b.e) ||
+                   device->step(state, &later, 300, &b.e) || device->get(state, TLED_DISPLACEMENT, first, &b.e) ||
+                   device->get(state, TLED_CONTRACTILE, taken, &b.e) || device->restore(state, &b.e) ||
+                   device->get(state, TLED_INTERNAL, second, &b.e) || device->step(state, &later, 300, &b.e) ||
+                   device->get(state, TLED_DISPLACEMENT, second, &b.e),
+               &b.e);
+    for (int64_t i = 0; i < p->elements; i++)
+        most = fmax(most, fabs(taken[i]));
+    ok(most > 1e-3 && !memcmp(first, second, (size_t)p->nodes * 3 * sizeof *first),
+       "saved and restored: the same bytes, c - 1 up to %.2g", most);
+    device->destroy(state);
+    free(first);
+    free(second);
+    bench_free(&b);
+}
+
+/* From displacements alone muscles begin with the stress of the plain curve. */
+static void test_begins(void)
+{
+    bench b;
+    block what = bar;
+    double *value, worst = 0;
+    what.mixed = true;
+    muscle_make(&b, &what, 1, 0, .05);
+    tled_problem *p = &b.problem;
+    stretch(&b, 1.1);
+    bench_must(muscle_fibre_rest(p, TLED_CONTRACTILE, 1, &b.e), &b.e);
+    value = calloc((size_t)p->script->curves * 3, sizeof *value);
+    tled_curves(p, 1, value);
+    const element_shape box = element_box(p->side[0], p->side[1], p->side[2]);
+    for (int64_t i = 0; i < p->elements; i++) {
+        const deformed d = deformed_of(p, i, box, p->at_start.of[TLED_DISPLACEMENT]);
+        element_fibre fibre = muscle_fibre_of(p, p->fibre, i, p->element_volume[i], 1 - tled_mixture(p, i), value);
+        fibre.series.contractile = p->at_start.of[TLED_CONTRACTILE][i];
+        const double got = element_serial(d.h, fibre).xx;
+        worst = fmax(worst, fabs(got - element_curved(d.h, fibre).xx));
+    }
+    ok(worst < 1e-6, "without contractile elements to begin with they are those of muscles at rest: %.2g Pa", worst);
+    free(value);
+    bench_free(&b);
+}
+
 static void test_need(void)
 {
     bench b;
@@ -182,7 +243,13 @@ static void test_need(void)
     bench_free(&b);
     muscle_make(&b, &bar, 1, 1.1, 0);
     ok(tled_need(&b.problem).features & EXECUTOR_CURVES, "and those with an optimum");
+    ok(!(tled_need(&b.problem).features & EXECUTOR_SERIES), "which have no springs");
     bench_free(&b);
+    vmax = 10;
+    muscle_make(&b, &bar, 1, 0, 0);
+    ok(tled_need(&b.problem).features & EXECUTOR_SERIES, "those with vmax do");
+    bench_free(&b);
+    vmax = 0;
 }
 
 int main(void)
@@ -191,6 +258,14 @@ int main(void)
     test_forces(&tled_cpu_double, 1e-13);
     test_forces(&tled_cpu_single, 1e-5);
     test_need();
+    vmax = 10;
+    test_step_at_rest();
+    test_forces(&tled_cpu_double, 1e-13);
+    test_forces(&tled_cpu_single, 1e-5);
+    test_restored(&tled_cpu_double);
+    test_restored(&tled_cpu_single);
+    test_begins();
+    vmax = 0;
     test_popping();
     return done_testing();
 }

@@ -248,8 +248,9 @@ static void test_forms_bytes(const tled_executor *cpu, const tled_executor *cuda
 /* Fibres that act by themselves: the CPU's bytes in bricks, small and many, also where slits are. */
 static void test_fibres_bytes(const tled_executor *cpu, const tled_executor *cuda, const char *name)
 {
-    static const block_fibres *const all[] = {&quadratic_fibres, &hgo_fibres,  &two_families, &passive_muscles,
-                                              &all_fibres,       &fung_tissue, NULL};
+    static const block_fibres *const all[] = {&quadratic_fibres, &hgo_fibres,    &two_families,
+                                              &passive_muscles,  &all_fibres,    &fung_tissue,
+                                              &serial_muscles,   &serial_fibres, NULL};
     char what[120];
     block mixed = muscle, cut = lump;
     mixed.mixed = cut.mixed = true;
@@ -290,6 +291,8 @@ static void test_fibres_looks(const tled_executor *twice, const tled_executor *o
     test_look(&large, false, 300, once, "single, hgo fibres, many bricks", 1e-6);
     in_fibres = &all_fibres;
     test_look(&mixed, false, 300, twice, "double, passive muscles with two families", 1e-10);
+    in_fibres = &serial_fibres;
+    test_look(&mixed, false, 300, twice, "double, muscles in series with springs", 1e-10);
     in_fibres = &two_families;
     test_look(&middle, false, 300, twice, "double, two families, more bricks", 1e-10);
     in_fibres = NULL;

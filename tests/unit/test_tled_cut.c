@@ -36,8 +36,8 @@ static void force_of(const tled_problem *p, int64_t element, double u[8][3], dou
     for (int i = 0; i < HOURGLASS_NUMBERS; i++)
         law.hourglass[i] = share * of.hourglass[i];
     const float *d = p->fibre + 3 * element, *c2 = p->mixfibre ? p->mixfibre + 3 * element : d;
-    element_fibre fibre = {{d[0], d[1], d[2]}, own * (.3 * v->peak), {0, 0, 0, 0}},
-                  second = {{c2[0], c2[1], c2[2]}, other * (.3 * w->peak), {0, 0, 0, 0}};
+    element_fibre fibre = {{d[0], d[1], d[2]}, own * (.3 * v->peak), {0, 0, 0, 0}, {0, 0}},
+                  second = {{c2[0], c2[1], c2[2]}, other * (.3 * w->peak), {0, 0, 0, 0}, {0, 0}};
     for (int c = 0; c < 8; c++)
         at.x.at[c] = u[c][0], at.y.at[c] = u[c][1], at.z.at[c] = u[c][2];
     g = element_force_of_two(p->form, p->control.kind, at, element_box(p->side[0], p->side[1], p->side[2]), law, fibre,

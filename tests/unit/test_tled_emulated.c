@@ -251,7 +251,10 @@ static void test_fibres(int64_t steps)
                {&two_families, {"two families, mixed muscles", cut, .5, false, {0}, false}},
                {&passive_muscles, {"passive muscles, mixed", cut, .5, false, {0}, false}},
                {&passive_muscles, {"a passive muscle", muscle, .5, false, {0}, false}},
-               {&all_fibres, {"passive muscles with two families, mixed", cut, .5, false, {0}, false}}};
+               {&all_fibres, {"passive muscles with two families, mixed", cut, .5, false, {0}, false}},
+               {&serial_muscles, {"muscles with springs, mixed", cut, .5, false, {0}, false}},
+               {&serial_muscles, {"a muscle with springs", muscle, .5, false, {0}, false}},
+               {&serial_fibres, {"muscles with springs and fibres, mixed", cut, .5, false, {0}, false}}};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
         fibres_act(all[i].fibres, all[i].what, steps);
         in_fibres = all[i].fibres;
@@ -301,6 +304,8 @@ static void test_fibres_looks(int64_t steps)
     test_look(&lump, true, steps, &tled_cuda_single, "a look at fung", 1e-6);
     in_fibres = &all_fibres;
     test_look(&cut, false, steps, &tled_cuda_double, "a look at passive muscles with two families", 1e-10);
+    in_fibres = &serial_fibres;
+    test_look(&cut, false, steps, &tled_cuda_double, "a look at muscles with springs", 1e-10);
     in_fibres = &two_families;
     test_look(&cut, false, steps, &tled_cuda_double, "a look at two families", 1e-10);
     in_fibres = NULL;

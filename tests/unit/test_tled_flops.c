@@ -19,7 +19,7 @@ static void forces(hourglass_kind kind, const double u[24], int is_active, doubl
 {
     const element_shape shape = {{.25 / .002, .25 / .003, .25 / .004}, {3e-6, 2e-6, 1.5e-6}, 1 / 2.4e-8};
     const element_law law = {{1000, 50000}, {.01, .02, .03, .04}};
-    const element_fibre fibre = {{.6, 0, .8}, 3000, {0, 0, 0, 0}};
+    const element_fibre fibre = {{.6, 0, .8}, 3000, {0, 0, 0, 0}, {0, 0}};
     element_field at;
     memcpy(&at, u, sizeof at);
     const element_field force = element_force(FORM_NEO_HOOKEAN, kind, at, shape, law, fibre, is_active);

@@ -1,7 +1,8 @@
 /* From a model to the solver's arrays: masses, corners, what is held, shares of forces, distances;
  * and models that are no lattice of boxes.
  */
-// needs: tled/problem/state.c tled/problem/conforming.c tled/problem/conforming_step.c tled/problem/script.c
+// needs: tled/problem/state.c tled/problem/deformed.c tled/problem/conforming.c
+// needs: tled/problem/conforming_step.c tled/problem/script.c
 // needs: tled/problem/script_surface.c tled/problem/loads.c tled/problem/followers.c tled/problem/muscle_fibre.c
 // needs: tled/problem/script_read.c tled/problem/script_nodes.c tled/problem/step.c tled/problem/support.c
 // needs: tled/problem/script_move.c tled/problem/pose_fit.c

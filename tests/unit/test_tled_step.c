@@ -1,7 +1,8 @@
 /* The stable step: against its formulas at rest, the element's matrix against the derivative of its
  * stress, its largest eigenvalue against bounds of it, and the model's bound against the largest frequency
  * of a block, found by power iteration. */
-// needs: tled/problem/state.c tled/problem/conforming.c tled/problem/conforming_step.c tled/problem/step.c
+// needs: tled/problem/state.c tled/problem/deformed.c tled/problem/conforming.c
+// needs: tled/problem/conforming_step.c tled/problem/step.c
 // needs: tled/problem/script.c tled/problem/script_read.c tled/problem/script_nodes.c tled/problem/script_surface.c
 // needs: tled/problem/loads.c tled/problem/followers.c tled/problem/muscle_fibre.c
 // needs: tled/problem/script_move.c tled/problem/pose_fit.c
@@ -106,7 +107,7 @@ static double passive; /* of muscles by chance: Pa; above 0, their optimum diffe
 
 static element_fibre fibre_by_chance(double tension)
 {
-    element_fibre fibre = {{number(), number(), number()}, tension, {0, 0, 0, 0}};
+    element_fibre fibre = {{number(), number(), number()}, tension, {0, 0, 0, 0}, {0, 0}};
     if (passive > 0)
         fibre.curves = (muscle_curves){.2 * number(), passive, 6.6, .4};
     const double length = element_length(fibre.along);
@@ -303,8 +304,8 @@ static void test_collapsed(void)
 static void test_no_range(void)
 {
     static const double side[3] = {.01, .01, .01};
-    const element_fibre none = {0}, lost = {{NAN, 0, 1}, 3000, {0, 0, 0, 0}},
-                        wild = {{0, 0, 1}, INFINITY, {0, 0, 0, 0}};
+    const element_fibre none = {0}, lost = {{NAN, 0, 1}, 3000, {0, 0, 0, 0}, {0, 0}},
+                        wild = {{0, 0, 1}, INFINITY, {0, 0, 0, 0}, {0, 0}};
     const element_tensor rest = {0}, point = {-1, 0, 0, 0, -1, 0, 0, 0, -1}, broken = {0, 0, 0, 0, 0, NAN, 0, 0, 0};
     const stability_range range[] = {stability_range_of(FORM_NEO_HOOKEAN, tissue, 1000, side, point, none, none),
                                      stability_range_of(FORM_NEO_HOOKEAN, tissue, 1000, side, broken, none, none),
@@ -335,16 +336,16 @@ static void test_ranges(void)
 int main(void)
 {
     const element_tensor bent = {.2, .3, -.1, .05, -.2, .2, -.15, .1, .1}, rest = {0};
-    const element_fibre none = {0}, muscle = {{2. / 7, 3. / 7, 6. / 7}, 30000, {0, 0, 0, 0}};
+    const element_fibre none = {0}, muscle = {{2. / 7, 3. / 7, 6. / 7}, 30000, {0, 0, 0, 0}, {0, 0}};
     test_rest();
-    const element_fibre other = {{.6, -.64, .48}, 12000, {0, 0, 0, 0}};
+    const element_fibre other = {{.6, -.64, .48}, 12000, {0, 0, 0, 0}, {0, 0}};
     test_matrix(rest, none, none);
     test_matrix(rest, muscle, none);
     test_matrix(bent, none, none);
     test_matrix(bent, muscle, none);
     test_matrix(bent, muscle, other);
-    const element_fibre stretched = {{.8, .6, 0}, 30000, {.1, 15000, 6.6, .4}};
-    const element_fibre straight = {{1, 0, 0}, 0, {0, 15000, 6.6, .1}};
+    const element_fibre stretched = {{.8, .6, 0}, 30000, {.1, 15000, 6.6, .4}, {0, 0}};
+    const element_fibre straight = {{1, 0, 0}, 0, {0, 15000, 6.6, .1}, {0, 0}};
     test_matrix(bent, stretched, straight);
     test_matrix(bent, none, straight);
     for (int f = 0; f < FORM_STEPPED; f++) {

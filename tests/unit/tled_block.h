@@ -160,10 +160,10 @@ static inline void block_tables(const block *b, model *m)
 }
 
 /* What fibres do by themselves, of both volumes: a kind that resists being stretched, or NULL; k1 is eta of quadratic;
- * the passive curve and the optimum of muscles. 0: not given. */
+ * the passive curve and the optimum of muscles, and the velocity of those that have a spring. 0: not given. */
 typedef struct block_fibres {
     const char *name, *kind[2];
-    double k1[2], k2[2], kappa[2], angle[2], passive[2], optimum[2];
+    double k1[2], k2[2], kappa[2], angle[2], passive[2], optimum[2], vmax[2];
     double fung[4]; /* c, bf, bt and bfs of the first volume, whose law is fung then */
 } block_fibres;
 
@@ -228,6 +228,7 @@ static inline void block_add_fibres(const block_fibres *f, model *m)
     block_values(m, "material.angle", f->angle);
     block_values(m, "material.passive", f->passive);
     block_values(m, "material.optimum", f->optimum);
+    block_values(m, "material.vmax", f->vmax);
     if (f->fung[0] > 0)
         block_fung(f->fung, m);
     block_directions(m, f->fung[0] > 0);

@@ -32,6 +32,15 @@ static const block_fibres all_fibres = {.name = "passive muscles with two famili
                                         .passive = {.1, .05},
                                         .optimum = {0, 1.1}};
 
+/* In series with springs: one of two muscles, or both, without or with fibres beside. */
+static const block_fibres serial_muscles = {
+    .name = "muscles in series with springs", .passive = {0, .05}, .optimum = {1.1, 0}, .vmax = {10, 0}};
+static const block_fibres serial_fibres = {.name = "such muscles with fibres",
+                                           .kind = {"quadratic", NULL},
+                                           .k1 = {2e4, 0},
+                                           .passive = {.1, 0},
+                                           .vmax = {5, 10}};
+
 static const block_fibres fung_tissue = {
     .name = "the law fung", .kind = {NULL, "hgo"}, .k1 = {0, 1e4}, .k2 = {0, 2}, .fung = {2e3, 8, 2, 4}};
 

@@ -43,6 +43,12 @@ static inline bool is_curved(const cpu_work *w, int32_t volume)
     return w->p->curved && w->p->volume[volume].curved;
 }
 
+/* Whether it contracts in series with a spring. */
+static inline bool is_serial(const cpu_work *w, int32_t volume)
+{
+    return w->p->serial && volume >= 0 && w->p->volume[volume].serial;
+}
+
 static inline real load(const void *array, int64_t at)
 {
     real x;
@@ -130,7 +136,9 @@ static inline element_fibre fibre_of(const cpu_work *w, const void *const along[
         return fibre;
     fibre.along = (element_vector){load(along[0], run->cell), load(along[1], run->cell), load(along[2], run->cell)};
     fibre.tension = share * (real_one)kind_of(w, volume)->tension;
-    if (which == ELEMENT_CURVED_MUSCLE) {
+    if (which == ELEMENT_SERIAL_MUSCLE)
+        fibre.series.stiffness = share * (real_one)curve[MUSCLE_SPRING];
+    if (which == ELEMENT_CURVED_MUSCLE || which == ELEMENT_SERIAL_MUSCLE) {
         fibre.curves.less = REAL_ZERO + (real_one)curve[MUSCLE_LESS];
         fibre.curves.passive = share * (real_one)curve[MUSCLE_PASSIVE];
         fibre.curves.stiffening = REAL_ZERO + (real_one)curve[MUSCLE_STIFFENING];
@@ -264,12 +272,46 @@ static inline int muscle_of(const cpu_work *w, const void *const along[3], int32
 {
     if (volume < 0 || !along[0])
         return ELEMENT_NO_MUSCLE;
+    if (is_serial(w, volume))
+        return ELEMENT_SERIAL_MUSCLE;
     if (is_curved(w, volume))
         return ELEMENT_CURVED_MUSCLE;
     return kind_of(w, volume)->tension != 0 ? ELEMENT_MUSCLE : ELEMENT_NO_MUSCLE;
 }
 
-/* Elements of which a volume has fibres that resist being stretched. */
+/* Whether a run has fibres that resist being stretched. */
+static inline bool is_fibred(const cpu_work *w, const rows_run *run)
+{
+    return fibres_any(&w->p->fibres, run->volume) || fibres_any(&w->p->fibres, run->mix);
+}
+
+/* Contractile elements of a run, which go on by the step that this pass ends. Cells after the run's are another's. */
+static inline void contract(const cpu_work *w, const rows_run *run, int32_t volume, element_tensor h, real_one *at,
+                            element_fibre *fibre)
+{
+    for (int lane = 0; lane < run->count; lane++)
+        fibre->series.contractile[lane] = at[run->cell + lane];
+    if (!(w->what & PASS_FINISH))
+        return;
+    fibre->series.contractile =
+        element_contract(h, *fibre, real_of(tled_contractile_most(&w->p->volume[volume], w->dt)));
+    for (int lane = 0; lane < run->count; lane++)
+        at[run->cell + lane] = fibre->series.contractile[lane];
+}
+
+/* Those of both volumes. */
+static inline void contract_both(const cpu_work *w, const rows_run *run, const element_field *u, element_shape shape,
+                                 element_fibre *fibre, element_fibre *second)
+{
+    const element_tensor h =
+        element_gradient(element_modes_of(u->x), element_modes_of(u->y), element_modes_of(u->z), shape.slope);
+    if (is_serial(w, run->volume) && w->fibre[0])
+        contract(w, run, run->volume, h, w->contractile, fibre);
+    if (is_serial(w, run->mix) && w->mixfibre[0])
+        contract(w, run, run->mix, h, w->mixcontractile, second);
+}
+
+/* Elements of which a volume has fibres that resist being stretched, or a muscle in series with a spring. */
 static inline void fibred_forces_of(const cpu_work *w, const rows_run *run, element_shape shape, hourglass_kind control)
 {
     const bool mixed = run->mix >= 0;
@@ -277,12 +319,15 @@ static inline void fibred_forces_of(const cpu_work *w, const rows_run *run, elem
     const real share = w->fraction ? load(w->fraction, run->cell) : REAL_ZERO + 1;
     const real part = mixed ? load(w->mixture, run->cell) : REAL_ZERO, own = share * (1 - part), other = share * part;
     const element_law law = mixed ? law_of_cells(w, run->cell, share) : law_of_kind(kind_of(w, run->volume), share);
-    const element_fibre fibre = fibre_of(w, w->fibre, run, run->volume, own, which);
-    const element_fibre second = fibre_of(w, w->mixfibre, run, mixed ? run->mix : run->volume, other, which_second);
+    const element_field u = moved_by(w, run);
+    element_fibre fibre = fibre_of(w, w->fibre, run, run->volume, own, which);
+    element_fibre second = fibre_of(w, w->mixfibre, run, mixed ? run->mix : run->volume, other, which_second);
+    if (w->p->serial)
+        contract_both(w, run, &u, shape, &fibre, &second);
     const fibre_set sets[2] = {fibres_of(w, run->cell, run->volume, w->fibre, w->family, own),
                                fibres_of(w, run->cell, run->mix, w->mixfibre, w->mixfamily, other)};
-    const element_field f = element_force_fibred(THE_FORM, control, moved_by(w, run), shape, law, fibre, which, second,
-                                                 which_second, sets, 1 + mixed);
+    const element_field f = element_force_fibred(THE_FORM, control, u, shape, law, fibre, which, second, which_second,
+                                                 sets, is_fibred(w, run) ? 1 + mixed : 0);
     add_field(w, run, &f);
 }
 
@@ -357,9 +402,11 @@ static inline void move_nodes(const cpu_work *w, const rows_layer *l, int a, nod
 /* The forces of a layer's elements; control: a constant. */
 static inline void layer_forces(const cpu_work *w, const rows_layer *l, element_shape shape, hourglass_kind control)
 {
-    const bool fibred = w->p->fibres.of;
+    const bool fibred = w->p->fibres.of, serial = w->p->serial;
     for (const rows_run *run = w->r->run + l->run; run < w->r->run + l->run + l->runs; run++)
-        if (fibred && (fibres_any(&w->p->fibres, run->volume) || fibres_any(&w->p->fibres, run->mix)))
+        if (fibred && is_fibred(w, run))
+            fibred_forces(w, run, shape);
+        else if (serial && (is_serial(w, run->volume) || is_serial(w, run->mix)))
             fibred_forces(w, run, shape);
         else if (run->mix >= 0)
             any_mixed_forces(w, run, shape);

@@ -518,6 +518,8 @@ static void make_work(cpu_state *s)
         w->mixfibre[a] = s->mixfibre ? s->mixfibre + a * (s->rows.cells + ROWS_PAD) : NULL;
     }
     find_families(s);
+    w->contractile = s->field[TLED_CONTRACTILE];
+    w->mixcontractile = s->field[TLED_MIXCONTRACTILE];
     for (int k = 0; k < cpu_law_numbers(s->p->form); k++)
         w->law[k] = s->law ? s->law + k * (s->rows.cells + ROWS_PAD) : NULL;
 }
@@ -581,7 +583,7 @@ static int64_t cpu_computed(const cpu_state *s)
     .destroy = cpu_destroy, .step = cpu_step, .get = cpu_get, .save = cpu_save, .restore = cpu_restore,                \
     .snapshot = cpu_snapshot, .fetch = cpu_fetch, .reload = cpu_reload, .bytes = cpu_bytes, .computed = cpu_computed
 
-enum { CPU_FEATURES = EXECUTOR_CONTACT | EXECUTOR_FOLLOWERS | EXECUTOR_MIXTURES | EXECUTOR_CURVES | EXECUTOR_FIBRES };
+enum { CPU_FEATURES = EXECUTOR_USUAL | EXECUTOR_CONTACT | EXECUTOR_FOLLOWERS };
 
 const tled_executor CPU_EXECUTOR = {
     .is = {.device = "cpu", .features = CPU_FEATURES, .forms = (1U << FORM_STEPPED) - 1, .unusable = cpu_unusable},

@@ -63,11 +63,35 @@ static inline void mesh_curves(muscle_curves *to, const double *curve, real_one 
     to->straight[lane] = (real_one)curve[MUSCLE_STRAIGHT];
 }
 
+/* A lane of a group whose muscle is in series with a spring. */
+static inline void mesh_series(const cpu_work *w, int64_t i, const tled_volume *v, real_one share, int lane,
+                               element_fibre *to, real *most)
+{
+    to->series.stiffness[lane] = share * (real_one)v->muscle[MUSCLE_SPRING];
+    to->series.contractile[lane] = ((const real_one *)w->contractile)[i];
+    (*most)[lane] = (real_one)tled_contractile_most(v, w->dt);
+}
+
+/* The contractile elements of a group, which go on by the step that this pass ends. */
+static inline void mesh_contract(const cpu_work *w, int64_t group, const element_field *u, const element_any *shape,
+                                 real most, element_fibre *fibre)
+{
+    if (!(w->what & PASS_FINISH))
+        return;
+    const element_tensor h =
+        element_any_gradient(shape, element_modes_of(u->x), element_modes_of(u->y), element_modes_of(u->z));
+    fibre->series.contractile = element_contract(h, *fibre, most);
+    for (int lane = 0; lane < LANES && group * LANES + lane < w->p->elements; lane++)
+        if (fibre->series.stiffness[lane] > 0)
+            ((real_one *)w->contractile)[group * LANES + lane] = fibre->series.contractile[lane];
+}
+
 /* What pulls along the fibres; *which: ELEMENT_MUSCLE and so on, the most of any of them. */
-static inline element_fibre mesh_fibre(const cpu_work *w, int64_t group, int *which)
+static inline element_fibre mesh_fibre(const cpu_work *w, int64_t group, int *which, real *most)
 {
     element_fibre fibre = {.tension = REAL_ZERO};
     *which = ELEMENT_NO_MUSCLE;
+    *most = REAL_ZERO;
     for (int lane = 0; w->fibre[0] && lane < LANES && group * LANES + lane < w->p->elements; lane++) {
         const int64_t i = group * LANES + lane;
         const int32_t volume = w->p->element_volume[i];
@@ -77,8 +101,12 @@ static inline element_fibre mesh_fibre(const cpu_work *w, int64_t group, int *wh
             continue;
         if (is_curved(w, volume))
             mesh_curves(&fibre.curves, w->p->volume[volume].muscle, share, lane);
-        if (*which != ELEMENT_CURVED_MUSCLE)
-            *which = is_curved(w, volume) ? ELEMENT_CURVED_MUSCLE : ELEMENT_MUSCLE;
+        if (is_serial(w, volume))
+            mesh_series(w, i, &w->p->volume[volume], share, lane, &fibre, most);
+        const int is = is_serial(w, volume)   ? ELEMENT_SERIAL_MUSCLE
+                       : is_curved(w, volume) ? ELEMENT_CURVED_MUSCLE
+                                              : ELEMENT_MUSCLE;
+        *which = is > *which ? is : *which;
         fibre.along.x[lane] = ((const real_one *)w->fibre[0])[i];
         fibre.along.y[lane] = ((const real_one *)w->fibre[1])[i];
         fibre.along.z[lane] = ((const real_one *)w->fibre[2])[i];
@@ -143,6 +171,8 @@ static inline void mesh_store(real_one *to, const element_corners *f)
 static inline element_field mesh_force(hourglass_kind control, element_field u, const element_any *shape,
                                        element_law law, element_fibre fibre, int which)
 {
+    if (which == ELEMENT_SERIAL_MUSCLE)
+        return element_any_force(THE_FORM, control, u, shape, law, fibre, ELEMENT_SERIAL_MUSCLE);
     if (which == ELEMENT_CURVED_MUSCLE)
         return element_any_force(THE_FORM, control, u, shape, law, fibre, ELEMENT_CURVED_MUSCLE);
     if (which == ELEMENT_MUSCLE)
@@ -162,7 +192,10 @@ static inline void mesh_groups_forces(const cpu_work *w, int64_t from, int64_t t
         const element_field u = {mesh_corners(w->from[0], node), mesh_corners(w->from[1], node),
                                  mesh_corners(w->from[2], node)};
         int which;
-        const element_fibre fibre = mesh_fibre(w, group, &which);
+        real most;
+        element_fibre fibre = mesh_fibre(w, group, &which, &most);
+        if (which == ELEMENT_SERIAL_MUSCLE)
+            mesh_contract(w, group, &u, &shape, most, &fibre);
         fibre_set sets[2];
         const int count = mesh_fibres(w, group, sets);
         const element_field f =

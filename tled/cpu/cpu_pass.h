@@ -56,10 +56,11 @@ typedef struct cpu_work {
     const void *law[FORM_NUMBERS + HOURGLASS_NUMBERS];                    /* cells: those that are mixed; or NULL */
     const void *mixfibre[3];                                              /* cells, or NULL */
     const void *family[FIBRE_FAMILIES][3], *mixfamily[FIBRE_FAMILIES][3]; /* cells, or NULL: of families */
-    const void *shape;         /* without a lattice: groups x cpu_mesh_numbers x lanes; or NULL */
-    const int32_t *group_node; /* groups x 8 x lanes */
-    void *force;               /* groups x 3 x 8 x lanes: what each corner is pulled with */
-    const double *now, *next;  /* the curves' values */
+    void *contractile, *mixcontractile; /* cells: contractile elements, which the pass moves on; or NULL */
+    const void *shape;                  /* without a lattice: groups x cpu_mesh_numbers x lanes; or NULL */
+    const int32_t *group_node;          /* groups x 8 x lanes */
+    void *force;                        /* groups x 3 x 8 x lanes: what each corner is pulled with */
+    const double *now, *next;           /* the curves' values */
     double dt, damping;
     int what;
 } cpu_work;

@@ -36,12 +36,14 @@ template <class S> static __device__ element_vector cuda_family(const S *family,
     return along;
 }
 
-/* A volume's muscle; share: of the element that is the volume's tissue. */
+/* A volume's muscle, a contractile element as at rest; share: of the element that is the volume's tissue. */
 static __device__ element_fibre cuda_muscle(const cuda_fibres<real> &of, const float *fibre, int64_t row, real share,
                                             real tension)
 {
-    const element_fibre muscle = {
-        cuda_direction(fibre, row), share * tension, {of.less, share * of.passive, of.stiffening, of.straight}};
+    const element_fibre muscle = {cuda_direction(fibre, row),
+                                  share * tension,
+                                  {of.less, share * of.passive, of.stiffening, of.straight},
+                                  {share * of.spring, 0}};
     return muscle;
 }
 

@@ -22,6 +22,7 @@ typedef struct cuda_pass {
     element_shape shape;
     node_factors factors;
     int what;
+    double dt;
 } cuda_pass;
 
 template <class G> static __device__ element_field cell_field(const real *u, const int &place)
@@ -101,6 +102,8 @@ static __device__ element_field plain_force(const L &l, const cuda_view<real> &v
 /* What is to be looked at of a volume's muscle: ELEMENT_MUSCLE and so on. */
 static __device__ int muscle_of(const cuda_fibres<real> &of, real tension)
 {
+    if (of.serial)
+        return ELEMENT_SERIAL_MUSCLE;
     if (of.curved)
         return ELEMENT_CURVED_MUSCLE;
     return tension != 0 ? ELEMENT_MUSCLE : ELEMENT_NO_MUSCLE;
@@ -111,23 +114,37 @@ typedef struct cell_part {
     const cuda_fibres<real> *of;
     const float *along; /* directions; or NULL */
     const real *family;
+    real *contractile; /* the cell's; or NULL */
     real share, tension;
     int which;
 } cell_part;
 
 static __device__ cell_part part_of(const cuda_view<real> &v, const cuda_pass &p, const cuda_fibres<real> *of,
-                                    const float *along, const real *family, real share)
+                                    const float *along, const real *family, real *contractile, real share)
 {
     const real tension = along ? cuda_tension(*of, p.now) : 0;
-    return {of, along, family, share, tension, along ? muscle_of(*of, tension) : ELEMENT_NO_MUSCLE};
+    return {of, along, family, contractile, share, tension, along ? muscle_of(*of, tension) : ELEMENT_NO_MUSCLE};
+}
+
+/* The contractile element of a muscle, which goes on by the step that this pass ends. */
+static __device__ real contract(const cuda_pass &p, const cell_part &part, element_tensor h, element_fibre fibre)
+{
+    fibre.series.contractile = *part.contractile;
+    if (p.what & PASS_FINISH)
+        *part.contractile = fibre.series.contractile = element_contract(h, fibre, (real)(part.of->fastest * p.dt));
+    return fibre.series.contractile;
 }
 
 /* Adds the stress of a muscle, if it is looked at. */
-static __device__ void add_muscle(const cell_part &part, int64_t row, element_tensor h, element_tensor *to)
+static __device__ void add_muscle(const cuda_pass &p, const cell_part &part, int64_t row, element_tensor h,
+                                  element_tensor *to)
 {
-    if (part.which)
-        *to = element_sum(
-            *to, element_muscle(h, cuda_muscle(*part.of, part.along, row, part.share, part.tension), part.which));
+    if (!part.which)
+        return;
+    element_fibre fibre = cuda_muscle(*part.of, part.along, row, part.share, part.tension);
+    if (part.which == ELEMENT_SERIAL_MUSCLE)
+        fibre.series.contractile = contract(p, part, h, fibre);
+    *to = element_sum(*to, element_muscle(h, fibre, part.which));
 }
 
 /* Adds S of what resists being stretched. */
@@ -143,15 +160,16 @@ static __device__ void add_stretched(const cuda_view<real> &v, const cell_part &
 /* Adds P of a cell's fibres, in the order of element_stress; MIXED: of two volumes, of which cpu_lanes.c looks at both
  * muscles alike where no fibres resist being stretched, and adds zeros, which have signs. */
 template <bool MIXED>
-static __device__ void add_fibres(const cuda_view<real> &v, cell_part own, cell_part other, int64_t row,
-                                  element_tensor h, element_tensor *to)
+static __device__ void add_fibres(const cuda_view<real> &v, const cuda_pass &p, cell_part own, cell_part other,
+                                  int64_t row, element_tensor h, element_tensor *to)
 {
     const bool stretched = cuda_stretched(*own.of) || (MIXED && cuda_stretched(*other.of));
-    if (MIXED && other.along && !stretched && (own.of->curved || other.of->curved))
+    const bool serial = own.of->serial || (MIXED && other.of->serial);
+    if (MIXED && other.along && !stretched && !serial && (own.of->curved || other.of->curved))
         own.which = other.which = ELEMENT_CURVED_MUSCLE;
-    add_muscle(own, row, h, to);
+    add_muscle(p, own, row, h, to);
     if (MIXED)
-        add_muscle(other, row, h, to);
+        add_muscle(p, other, row, h, to);
     if (!stretched)
         return;
     const element_symmetric e = element_green(h);
@@ -183,10 +201,12 @@ static __device__ element_field fibred_force(const L &l, const cuda_view<real> &
     element_tensor stress = form_stress(l.which, h, law.c);
     if (i < t.fibred) {
         const real part = MIXED ? (real)mixed->share : 0;
-        const cell_part own = part_of(v, p, v.fibres + volume, v.fibre, v.family, share * (1 - part));
+        const int64_t cell = t.cell + i;
+        const cell_part own =
+            part_of(v, p, v.fibres + volume, v.fibre, v.family, v.contractile + cell, share * (1 - part));
         const cell_part other = part_of(v, p, v.fibres + (MIXED ? mixed->mix : volume), MIXED ? v.mixfibre : NULL,
-                                        v.mixfamily, share * part);
-        add_fibres<MIXED>(v, own, other, t.direction + i, h, &stress);
+                                        v.mixfamily, v.mixcontractile + cell, share * part);
+        add_fibres<MIXED>(v, p, own, other, t.direction + i, h, &stress);
     }
     if (!first)
         held = element_hold(l.which, l.control, modes, h, p.shape, &law);

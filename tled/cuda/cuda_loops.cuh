@@ -312,7 +312,7 @@ static int64_t cuda_computed(const cuda_state *s)
     return s->method->computed(s);
 }
 
-enum { CUDA_FEATURES = EXECUTOR_MIXTURES | EXECUTOR_CURVES | EXECUTOR_FIBRES };
+enum { CUDA_FEATURES = EXECUTOR_USUAL };
 
 const tled_executor CUDA_EXECUTOR = {
     .is = {.device = "cuda", .features = CUDA_FEATURES, .forms = TILES_FORMS, .unusable = card_unusable},

@@ -119,7 +119,8 @@ static int pass(cuda_state *s, const tled_plan *plan, const double *now, int wha
                    NULL,
                    s->shape,
                    node_factors_of(1 / plan->rate, plan->damping),
-                   what};
+                   what,
+                   1 / plan->rate};
     s->spare_is_internal = (what & PASS_INTERNAL) != 0;
     if (begin_pass(s, &p, e))
         return -1;
@@ -191,7 +192,8 @@ static int resident_passes(cuda_state *s, const cuda_batch *b, err *e)
                          NULL,
                          s->shape,
                          node_factors_of(1 / b->plan->rate, b->plan->damping),
-                         0};
+                         0,
+                         1 / b->plan->rate};
     const cuda_resident r = {p,
                              moves ? s->field[TLED_DISPLACEMENT] : s->spare,
                              s->message,

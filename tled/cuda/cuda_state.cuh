@@ -274,12 +274,15 @@ template <class R> static cuda_fibres<R> fibres_of_volume(const tled_problem *p,
             (R)v->muscle[MUSCLE_PASSIVE],
             (R)v->muscle[MUSCLE_STIFFENING],
             (R)v->muscle[MUSCLE_STRAIGHT],
+            (R)v->muscle[MUSCLE_SPRING],
             v->peak,
             v->optimum,
+            v->muscle[MUSCLE_FASTEST],
             (int32_t)v->contract,
             fibre_numbers_families(n),
             n->c > 0,
-            v->curved};
+            v->curved,
+            v->serial};
 }
 
 /* The directions of families in a row of the tiles' fibres. */
@@ -391,6 +394,8 @@ static int put_problem(cuda_state *s, err *e)
     s->bytes = layout.bytes;
     snprintf(what, sizeof what, "the solver of %lld elements", (long long)s->p->elements);
     result = card_layout_place(&layout, false, what, &s->memory, e) || put_script(s, e) ? -1 : 0;
+    s->view.contractile = s->field[TLED_CONTRACTILE];
+    s->view.mixcontractile = s->field[TLED_MIXCONTRACTILE];
 out:
     free(numbers.mass_inverse);
     free(numbers.law);

@@ -72,9 +72,11 @@ template <class R> struct cuda_fibres {
     R k1, k2, kappa;                       /* of a family */
     R c, all, along, both;                 /* of the law fung: fibre_fung */
     R less, passive, stiffening, straight; /* of its muscle: muscle_curves */
-    double peak, optimum;                  /* Pa, 1 */
+    R spring;                              /* in series with it, Pa: muscle_series */
+    double peak, optimum, fastest;         /* Pa, 1, 1/s */
     int32_t contract;                      /* its curve, or -1 */
-    int32_t families, is_fung, curved;     /* how many; whether it is; whether the muscle has curves of its own */
+    int32_t families, is_fung;             /* how many; whether it is */
+    int32_t curved, serial;                /* whether the muscle has curves of its own; a spring */
 };
 
 template <class S> struct cuda_view {
@@ -104,6 +106,7 @@ template <class S> struct cuda_view {
     const cuda_fibres<S> *fibres; /* volumes */
     const S *family, *mixfamily;  /* or NULL: no volume has such */
     int64_t directions;
+    S *contractile, *mixcontractile; /* cells, which steps move on; or NULL: no muscle has a spring */
 };
 
 /* Where a tile's list begins, or -1; nothing, where no tile is listed. */

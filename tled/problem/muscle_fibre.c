@@ -1,6 +1,10 @@
 #include "tled/problem/muscle_fibre.h"
 
+#include "base/mem.h"
 #include "physics/stability.h"
+#include "tled/problem/deformed.h"
+
+#include <stdlib.h>
 
 element_fibre muscle_fibre_of(const tled_problem *p, const float *along, int64_t element, int32_t volume, double share,
                               const double *value)
@@ -29,4 +33,32 @@ bool muscle_fibre_falls(const tled_problem *p, int64_t element, const double *va
     const element_fibre other = muscle_fibre_of(p, p->mixfibre, element, tled_mix(p, element), mixture, value);
     return (element_fibre_which(own) && stability_falls(h, own, mu)) ||
            (element_fibre_which(other) && stability_falls(h, other, mu));
+}
+
+/* c - 1 of a fibre whose spring has the stress of a muscle that does not move. */
+static double at_rest(element_tensor h, element_fibre fibre)
+{
+    const double lambda = element_length(element_fibre_now(h, fibre.along));
+    const double tension = fibre.tension * muscle_force_length(lambda + lambda * fibre.curves.less);
+    const double spring = fibre.series.stiffness;
+    return spring > 0 ? element_fibre_strain(h, fibre.along, lambda) - tension / spring : 0;
+}
+
+int muscle_fibre_rest(tled_problem *p, int i, double time, err *e)
+{
+    const bool second = i == TLED_MIXCONTRACTILE;
+    const element_shape box = element_box(p->side[0], p->side[1], p->side[2]);
+    double *value = mem_array(p->script->curves, 3 * sizeof *value, "the muscles", e);
+    if (!value)
+        return -1;
+    tled_curves(p, time, value);
+    for (int64_t k = 0; k < p->elements; k++) {
+        const double mixture = tled_mixture(p, k), share = second ? mixture : 1 - mixture;
+        const int32_t volume = second ? tled_mix(p, k) : p->element_volume[k];
+        const element_fibre fibre = muscle_fibre_of(p, second ? p->mixfibre : p->fibre, k, volume, share, value);
+        const deformed d = deformed_of(p, k, box, p->at_start.of[TLED_DISPLACEMENT]);
+        p->at_start.of[i][k] = at_rest(d.h, fibre);
+    }
+    free(value);
+    return 0;
 }

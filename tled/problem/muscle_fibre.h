@@ -19,4 +19,8 @@ double muscle_fibre_energy(const tled_problem *p, int64_t element, element_tenso
  * mu: of the element's law, Pa. */
 bool muscle_fibre_falls(const tled_problem *p, int64_t element, const double *value, element_tensor h, double mu);
 
+/* Contractile elements (physics/muscle_series.h) at the start, field TLED_CONTRACTILE or TLED_MIXCONTRACTILE: at its
+ * displacements each muscle pulls as it does where nothing moves. -1 with e filled. */
+int muscle_fibre_rest(tled_problem *p, int i, double time, err *e);
+
 #endif

@@ -9,22 +9,38 @@
 #include "tled/problem/conforming_step.h"
 #include "tled/problem/followers.h"
 #include "tled/problem/loads.h"
+#include "tled/problem/muscle_fibre.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+/* How a run begins without contractile elements. */
+#define WITHOUT_CONTRACTILE "muscles as strong as if they had not moved"
+
 static const field state_field[] = {
     [TLED_DISPLACEMENT] = {"node.displacement", "m", FIELD_NODE, 3, FIELD_IN_FRAMES | FIELD_IN_CHECKPOINTS, NULL},
     [TLED_VELOCITY] = {"node.velocity", "m/s", FIELD_NODE, 3, FIELD_IN_FRAMES | FIELD_IN_CHECKPOINTS, "velocity 0"},
+    [TLED_CONTRACTILE] = {"element.contractile", "1", FIELD_ELEMENT, 1, FIELD_IN_FRAMES | FIELD_IN_CHECKPOINTS,
+                          WITHOUT_CONTRACTILE},
+    [TLED_MIXCONTRACTILE] = {"element.mixcontractile", "1", FIELD_ELEMENT, 1, FIELD_IN_FRAMES | FIELD_IN_CHECKPOINTS,
+                             WITHOUT_CONTRACTILE},
 };
 
 fields tled_fields(int64_t nodes, int64_t elements)
 {
-    return (fields){.field = state_field,
-                    .count = sizeof state_field / sizeof *state_field,
-                    .rows = {[FIELD_NODE] = nodes, [FIELD_ELEMENT] = elements}};
+    return (fields){
+        .field = state_field, .count = TLED_CONTRACTILE, .rows = {[FIELD_NODE] = nodes, [FIELD_ELEMENT] = elements}};
+}
+
+/* Where all is known that the state may have. */
+static int make_fields(tled_problem *p, err *e)
+{
+    p->fields = tled_fields(p->nodes, p->elements);
+    if (p->serial)
+        p->fields.count = p->mixfibre ? TLED_MIXCONTRACTILE + 1 : TLED_CONTRACTILE + 1;
+    return fields_allocate(&p->fields, FIELDS_ALL, &p->at_start, "the nodes", e);
 }
 
 static void forget_loads(tled_problem *p)
@@ -265,6 +281,7 @@ static int make_muscle(tled_volume *v, const model *m, int32_t i, const material
                        "peak=PASCAL",
                        material_of_volume(m, i), of->passive);
     v->curved = material_muscle(of, v->muscle);
+    v->serial = v->muscle[MUSCLE_SPRING] > 0;
     return 0;
 }
 
@@ -288,8 +305,10 @@ static int make_volumes(tled_problem *p, const model *m, const material *of, err
     for (int32_t i = 0; i < p->volumes; i++)
         if (make_volume(p, m, i, &of[i], e))
             return -1;
-    for (int32_t i = 0; i < p->volumes; i++)
+    for (int32_t i = 0; i < p->volumes; i++) {
         p->curved |= p->volume[i].curved;
+        p->serial |= p->fibre && p->volume[i].serial;
+    }
     for (int64_t i = 0; i < p->elements; i++)
         p->volume[p->element_volume[i]].elements++;
     return 0;
@@ -406,12 +425,11 @@ int tled_problem_make(tled_problem *p, const model *m, const script *s, hourglas
     p->corner = mem_array(boxes ? p->nodes : p->elements, 8 * sizeof *p->corner, "the nodes", e);
     p->mass = mem_array(p->nodes, sizeof *p->mass, "the nodes", e);
     p->hold = mem_array(p->nodes, 3 * sizeof *p->hold, "the nodes", e);
-    p->fields = tled_fields(p->nodes, p->elements);
-    if (!p->corner || !p->mass || !p->hold || fields_allocate(&p->fields, FIELDS_ALL, &p->at_start, "the nodes", e))
+    if (!p->corner || !p->mass || !p->hold)
         return -1;
     if ((boxes && check_boxes(p, e)) || check_fractions(p, e) || check_mixes(p, e) || (boxes && join_own(p, m, e)) ||
-        make_laws(p, m, e) || (boxes ? make_corners(p, e) : conforming_corners(p, e)) || loads_make(p, m, e) ||
-        followers_make(p, m, e) || bodies_make(p, m, e))
+        make_laws(p, m, e) || make_fields(p, e) || (boxes ? make_corners(p, e) : conforming_corners(p, e)) ||
+        loads_make(p, m, e) || followers_make(p, m, e) || bodies_make(p, m, e))
         return -1;
     if (!boxes)
         conforming_join(p);
@@ -450,6 +468,9 @@ int tled_problem_start(tled_problem *p, const frame *f, notes *warnings, err *e)
         return err_set(e, NULL, 0, "frame %lld has no time, so the run cannot go on from it", (long long)f->index);
     for (int i = 0; i < p->fields.count; i++)
         if (start_field(p, i, f, warnings, e))
+            return -1;
+    for (int i = TLED_CONTRACTILE; i < p->fields.count; i++)
+        if (!fields_find(&p->fields, i, f) && muscle_fibre_rest(p, i, f->time, e))
             return -1;
     for (int64_t i = 0; i < 3 * p->nodes; i++)
         if (p->hold[i] == HOLD_STILL)

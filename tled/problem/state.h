@@ -34,6 +34,7 @@ typedef struct tled_volume {
     double peak, optimum;          /* Pa; the stretch at which its muscle is strongest */
     double muscle[MUSCLE_NUMBERS]; /* its curves (muscle_curves.h); all 0: the active one alone, strongest at rest */
     bool curved;                   /* that they are not */
+    bool serial;                   /* that its muscle is in series with a spring (muscle_series.h) */
     double square;                 /* 1/s2: of the highest frequency of an element of it at rest (step.h) */
     int64_t elements;              /* of it */
     int64_t contract;              /* curve that sets its level, or -1 */
@@ -74,6 +75,7 @@ typedef struct tled_problem {
     int32_t *force_spring; /* entries: the curve of a spring's factor, or -1 (loads.h) */
     double *force_share;   /* entries: 1 for a force, m2 for a traction, in all; N/m for a spring */
     bool curved;           /* that any volume's muscle has curves of its own */
+    bool serial;           /* that any is in series with a spring: the state then has contractile elements */
     const script *script;
     int64_t gravity;                   /* its curve, or -1 */
     double start;                      /* s: the model's time at the start */
@@ -100,8 +102,10 @@ static inline double tled_time(const tled_plan *plan, int64_t i)
 
 /* What get() gives, as doubles: field i of the table, of which these are the first, nodes x 3: m, m/s; and internal
  * forces, nodes x 3, N: the sum of the elements' pulls at the displacement, less what a probe and pressures push with
- * (where a step or create led to the state; not right after restore). */
-enum { TLED_DISPLACEMENT, TLED_VELOCITY, TLED_INTERNAL = FIELDS_MOST };
+ * (where a step or create led to the state; not right after restore). Where muscles are in series with springs there
+ * are elements x 1 of their volume's contractile elements, c - 1 (muscle_series.h), and where second volumes have
+ * fibres of theirs. */
+enum { TLED_DISPLACEMENT, TLED_VELOCITY, TLED_CONTRACTILE, TLED_MIXCONTRACTILE, TLED_INTERNAL = FIELDS_MOST };
 
 /* What a pass over the model does, in any executor: ends a step, begins the next, writes the internal forces instead of
  * displacements. */
@@ -117,7 +121,7 @@ void tled_problem_free(tled_problem *p);
  * filled. */
 int tled_problem_reload(tled_problem *p, const model *m, err *e);
 
-/* What a state of a model of so many nodes and elements consists of. taken() fills what of it frames have. */
+/* What a state of a model of so many nodes and elements consists of; without contractile elements. */
 fields tled_fields(int64_t nodes, int64_t elements);
 
 /* Starts from a frame: its time and its fields, with a note of those that it lacks and a run can begin without. */
@@ -152,6 +156,12 @@ double tled_activation(const tled_problem *p, int32_t volume, const double *valu
 
 /* The active stress of a volume (Pa): activation times peak, over the optimum; value: of all curves. */
 double tled_tension(const tled_problem *p, int32_t volume, const double *value);
+
+/* What the contractile element of a volume's muscle may lose of the fibre's stretch in a step of dt (s). */
+static inline double tled_contractile_most(const tled_volume *v, double dt)
+{
+    return v->muscle[MUSCLE_FASTEST] * dt;
+}
 
 /* The sum of what acts on node n from outside (N, 3): gravity, forces, tractions and springs. value: all curves'
  * values, 3 a curve; u: its displacement (3, m). */

@@ -16,7 +16,7 @@ typedef struct moment {
     bool known;
     double *displacement, *internal, *push; /* nodes x 3; push: NULL without a probe */
     double *pressed;                        /* likewise, N: by pressures; NULL without */
-    double *stretch;                        /* elements x 2: of either fibre; NULL without muscles */
+    double *stretch, *pull; /* elements x 2: of either fibre, and of springs in series, Pa; NULL without muscles */
     double *curves;
     double driven; /* J: kinetic energy where displacements are prescribed */
     double first;  /* J: held at the first reading */
@@ -34,6 +34,7 @@ struct account {
     pool *threads;
     moment now, before, saved;
     double *velocity;
+    double *contractile[2]; /* elements: of now; or NULL */
     struct account_part *part;
     strained_view view; /* of now */
     probe_placed probe; /* of now */
@@ -52,11 +53,21 @@ static double muscle_work(const account *a, int64_t i, int fibre, int32_t volume
 {
     const tled_problem *p = a->p;
     const double was = a->before.stretch[2 * i + fibre], is = a->now.stretch[2 * i + fibre];
+    if (p->volume[volume].serial)
+        return -rest * (a->before.pull[2 * i + fibre] + a->now.pull[2 * i + fibre]) / 2 * (is - was);
     const double tension = (tled_tension(p, volume, a->before.curves) + tled_tension(p, volume, a->now.curves)) / 2;
     if (tension == 0)
         return 0;
     const double more = 1 + p->volume[volume].muscle[MUSCLE_LESS]; /* 1/optimum */
     return -rest * tension / more * (muscle_force_length_sum(is * more) - muscle_force_length_sum(was * more));
+}
+
+/* What the spring of a muscle pulls with, Pa, of the muscle alone. */
+static double pull_of(const account *a, int64_t i, int fibre, int32_t volume, const float *along, element_tensor h)
+{
+    const muscle_series s = {a->p->volume[volume].muscle[MUSCLE_SPRING], a->contractile[fibre][i]};
+    const element_vector at = {along[3 * i], along[3 * i + 1], along[3 * i + 2]};
+    return muscle_spring(s, element_fibre_strain(h, at, a->now.stretch[2 * i + fibre]));
 }
 
 static void add_muscles(account *a, int64_t i, const deformed *d, account_sums *sum)
@@ -66,9 +77,11 @@ static void add_muscles(account *a, int64_t i, const deformed *d, account_sums *
     const int32_t volume[2] = {p->element_volume[i], tled_mix(p, i)};
     const double share[2] = {1 - tled_mixture(p, i), tled_mixture(p, i)};
     for (int k = 0; k < 2; k++) {
-        if (!along[k] || volume[k] < 0 || p->volume[volume[k]].contract < 0)
+        if (!along[k] || volume[k] < 0 || (p->volume[volume[k]].contract < 0 && !p->volume[volume[k]].serial))
             continue;
         a->now.stretch[2 * i + k] = stretch_of(along[k], i, d->h);
+        if (p->volume[volume[k]].serial)
+            a->now.pull[2 * i + k] = pull_of(a, i, k, volume[k], along[k], d->h);
         if (a->before.known)
             sum->muscles += muscle_work(a, i, k, volume[k], tled_fraction(p, i) * share[k] * d->rest);
     }
@@ -273,6 +286,9 @@ const account_sums *account_read(account *a, const tled_executor *b, tled_state 
     if (b->get(state, TLED_DISPLACEMENT, a->now.displacement, e) || b->get(state, TLED_VELOCITY, a->velocity, e) ||
         b->get(state, TLED_INTERNAL, a->now.internal, e))
         return NULL;
+    for (int i = TLED_CONTRACTILE; i < p->fields.count; i++)
+        if (b->get(state, i, a->contractile[i - TLED_CONTRACTILE], e))
+            return NULL;
     begin_sums(a, time);
     tled_curves(p, time, a->now.curves);
     if (p->collider)
@@ -309,6 +325,7 @@ static void copy_moment(const tled_problem *p, const moment *from, moment *to)
     to->push = own.push;
     to->pressed = own.pressed;
     to->stretch = own.stretch;
+    to->pull = own.pull;
     to->curves = own.curves;
     memcpy(to->displacement, from->displacement, size);
     memcpy(to->internal, from->internal, size);
@@ -319,6 +336,8 @@ static void copy_moment(const tled_problem *p, const moment *from, moment *to)
         memcpy(to->pressed, from->pressed, size);
     if (to->stretch)
         memcpy(to->stretch, from->stretch, 2 * (size_t)p->elements * sizeof(double));
+    if (to->pull)
+        memcpy(to->pull, from->pull, 2 * (size_t)p->elements * sizeof(double));
 }
 
 void account_save(account *a)
@@ -373,7 +392,9 @@ static int make_moment(const tled_problem *p, moment *m, err *e)
         return -1;
     if (p->followers && make_numbers(p->nodes, 3, &m->pressed, e))
         return -1;
-    return contracts(p) ? make_numbers(p->elements, 2, &m->stretch, e) : 0;
+    if (p->serial && make_numbers(p->elements, 2, &m->pull, e))
+        return -1;
+    return p->serial || contracts(p) ? make_numbers(p->elements, 2, &m->stretch, e) : 0;
 }
 
 static void free_moment(moment *m)
@@ -384,6 +405,7 @@ static void free_moment(moment *m)
     free(m->push);
     free(m->pressed);
     free(m->stretch);
+    free(m->pull);
 }
 
 account *account_create(const tled_problem *p, pool *threads, err *e)
@@ -397,6 +419,11 @@ account *account_create(const tled_problem *p, pool *threads, err *e)
     a->has_muscles = account_has_muscles(p);
     a->velocity = mem_array(p->nodes, 3 * sizeof(double), "the log", e);
     a->part = mem_array(pool_chunks(most, CHUNK), sizeof *a->part, "the log", e);
+    for (int i = TLED_CONTRACTILE; i < p->fields.count; i++)
+        if (make_numbers(p->elements, 1, &a->contractile[i - TLED_CONTRACTILE], e)) {
+            account_destroy(a);
+            return NULL;
+        }
     if (!a->velocity || !a->part || make_moment(p, &a->now, e) || make_moment(p, &a->before, e) ||
         make_moment(p, &a->saved, e) || followers_room(&a->followers, p->followers, e)) {
         account_destroy(a);
@@ -414,6 +441,8 @@ void account_destroy(account *a)
     free_moment(&a->saved);
     followers_room_free(&a->followers);
     free(a->velocity);
+    free(a->contractile[0]);
+    free(a->contractile[1]);
     free(a->part);
     free(a);
 }
