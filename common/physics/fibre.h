@@ -158,7 +158,7 @@ ELEMENT_FUNCTION element_tensor fibre_moved(element_tensor h, element_symmetric 
 }
 
 /* P (Pa) of one or two volumes' fibres. */
-ELEMENT_FUNCTION element_tensor fibre_stress(element_tensor h, const fibre_set *sets, int count)
+ELEMENT_APART element_tensor fibre_stress(element_tensor h, const fibre_set *sets, int count)
 {
     const element_symmetric e = element_green(h);
     element_symmetric s = {REAL_ZERO, REAL_ZERO, REAL_ZERO, REAL_ZERO, REAL_ZERO, REAL_ZERO};

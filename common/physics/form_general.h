@@ -74,7 +74,7 @@ ELEMENT_FUNCTION element_vector form_general_pulls(element_vector log, const rea
 
 /* P of the terms of stretches: P = F S, and as cof F = J F^-T, and S and C have the same axes,
  *     P = cof F (1/J) sum over k of pull_k N_k (x) N_k,   N_k the eigenvectors of C - I. */
-ELEMENT_FUNCTION element_tensor form_general_stretch_stress(element_tensor h, const real *c)
+ELEMENT_APART element_tensor form_general_stretch_stress(element_tensor h, const real *c)
 {
     const spectral s = spectral_of(element_green(h));
     const real root = element_cube_root_inverse(1 + element_dilation(h)), inverse = root * root * root;

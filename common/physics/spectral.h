@@ -63,7 +63,7 @@ ELEMENT_FUNCTION void spectral_sweep(element_symmetric *a, element_tensor *v)
 }
 
 /* Four sweeps leave nothing beside the diagonal that a float has digits for, five nothing that a double has. */
-ELEMENT_FUNCTION spectral spectral_of(element_symmetric a)
+ELEMENT_APART spectral spectral_of(element_symmetric a)
 {
     const real one = real_of(1), none = REAL_ZERO;
     element_tensor v = {one, none, none, none, one, none, none, none, one};

@@ -167,19 +167,6 @@ static inline void mesh_store(real_one *to, const element_corners *f)
         store(to, i * LANES, f->at[i]);
 }
 
-/* Compiled for each that `which` may be. */
-static inline element_field mesh_force(hourglass_kind control, element_field u, const element_any *shape,
-                                       element_law law, element_fibre fibre, int which)
-{
-    if (which == ELEMENT_SERIAL_MUSCLE)
-        return element_any_force(THE_FORM, control, u, shape, law, fibre, ELEMENT_SERIAL_MUSCLE);
-    if (which == ELEMENT_CURVED_MUSCLE)
-        return element_any_force(THE_FORM, control, u, shape, law, fibre, ELEMENT_CURVED_MUSCLE);
-    if (which == ELEMENT_MUSCLE)
-        return element_any_force(THE_FORM, control, u, shape, law, fibre, ELEMENT_MUSCLE);
-    return element_any_force(THE_FORM, control, u, shape, law, fibre, ELEMENT_NO_MUSCLE);
-}
-
 /* The forces of groups; control: a constant. */
 static inline void mesh_groups_forces(const cpu_work *w, int64_t from, int64_t to, hourglass_kind control)
 {
@@ -198,9 +185,7 @@ static inline void mesh_groups_forces(const cpu_work *w, int64_t from, int64_t t
             mesh_contract(w, group, &u, &shape, most, &fibre);
         fibre_set sets[2];
         const int count = mesh_fibres(w, group, sets);
-        const element_field f =
-            count ? element_any_force_fibred(THE_FORM, control, u, &shape, law, fibre, which, sets, count)
-                  : mesh_force(control, u, &shape, law, fibre, which);
+        const element_field f = element_any_force_fibred(THE_FORM, control, u, &shape, law, fibre, which, sets, count);
         mesh_store(force, &f.x);
         mesh_store(force + 8 * LANES, &f.y);
         mesh_store(force + 16 * LANES, &f.z);
