@@ -279,6 +279,20 @@ static int add_shares(model *m, const voxels *x, err *e)
     return 0;
 }
 
+static int add_moments(model *m, const moments_list *list, err *e)
+{
+    if (!list->count)
+        return 0;
+    if (model_axis_add(m, "cut", list->count, e))
+        return -1;
+    model_array *element = model_add(m, "cut.element", e), *of = element ? model_add(m, "cut.moments", e) : NULL;
+    for (int64_t i = 0; of && i < list->count; i++) {
+        element->i32[i] = (int32_t)list->voxel[i].element;
+        memcpy(of->f32 + MOMENTS * i, list->voxel[i].of, sizeof list->voxel[i].of);
+    }
+    return of ? 0 : -1;
+}
+
 static int add_inside(model *m, const slits *s, err *e)
 {
     model_array *a = s->inside ? model_add(m, "element.inside", e) : NULL;
@@ -302,7 +316,7 @@ int build_elements(model *m, const voxels *x, const slits *s, const lattice *l, 
     if (atomic_load(&w.failed))
         err_memory(e, "a layer of nodes");
     else
-        status = (x->fraction && add_shares(m, x, e)) || add_inside(m, s, e) ? -1 : 0;
+        status = (x->fraction && add_shares(m, x, e)) || add_moments(m, &x->cut, e) || add_inside(m, s, e) ? -1 : 0;
 out:
     free(w.first);
     voxels_layers_free(&layer);

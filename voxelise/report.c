@@ -135,12 +135,33 @@ void report_volume_row(text_table *t, const volumes_volume *v, int64_t open)
     text_table_cell(t, "%s", v->surfaces);
 }
 
-int report_table(out *to, const text_table *rows, err *e)
+static int put_table(out *to, const text_table *rows, err *e)
 {
     char *lines = text_table_lines(rows, e);
     out_text(to, lines ? lines : "");
     free(lines);
     return lines ? 0 : -1;
+}
+
+int report_write(const tool *t, const text_table *of_surfaces, const text_table *of_volumes, out *detail, err *e)
+{
+    size_t size;
+    out *to = out_open(t->common->output, t->common->gzip, e);
+    int status = to ? put_table(to, of_surfaces, e) : -1;
+    if (!status) {
+        out_text(to, "\n");
+        status = put_table(to, of_volumes, e);
+    }
+    if (status) {
+        out_discard(to);
+        return -1;
+    }
+    const unsigned char *all = out_bytes(detail, &size);
+    if (t->common->verbose) {
+        out_text(to, "\n");
+        out_write(to, all, size);
+    }
+    return out_close(to, e);
 }
 
 void report_warn(notes *n, listing *thin, const char *what, const char *name, const check_result *r)

@@ -30,8 +30,8 @@ void report_surface_row(text_table *t, const char *name, const check_result *r, 
 text_table *report_volumes(err *e);
 void report_volume_row(text_table *t, const volumes_volume *v, int64_t open);
 
-/* Writes a table. -1 with e filled on no memory. */
-int report_table(out *to, const text_table *rows, err *e);
+/* Writes the tables, and with -v the detail. -1 with e filled. */
+int report_write(const tool *t, const text_table *of_surfaces, const text_table *of_volumes, out *detail, err *e);
 
 /* Warns where it crosses itself, and adds it to those that are thin. what: "surface" or "volume". */
 void report_warn(notes *n, listing *thin, const char *what, const char *name, const check_result *r);

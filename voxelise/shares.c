@@ -6,12 +6,141 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* ---- moments */
+
+/* Of a row of samples at places b along y and c along z, a run adds to each voxel's sums
+ *     n w and X w,   w = 1, b, c, b c,
+ * n its samples there and X the sum of their places along x. Where a run fills a voxel's row from end to end, n is
+ * constant and X is 0: so what begins and ends is enough. Rows of numbers: of each w but 1 (whose n is the share's)
+ * what n begins to be, and what is left over of it in its first and last voxel; then of each w X. */
+enum { BEGINS, LEFT = 3, ALONG = 6, MOMENTS_ROWS = 10 };
+
+static int64_t floor_mod(int64_t a, int64_t b)
+{
+    return (a % b + b) % b;
+}
+
+/* A sample's place, from -(samples - 1) to samples - 1. */
+static int32_t place_of(int64_t at, int samples)
+{
+    return (int32_t)(2 * floor_mod(at, samples) + 1 - samples);
+}
+
+int moments_create(moments *m, int samples, int64_t low, int64_t cells, err *e)
+{
+    *m = (moments){.samples = samples, .low = low, .cells = cells};
+    m->sum = mem_array(cells + 1, MOMENTS_ROWS * sizeof *m->sum, "a row", e);
+    return m->sum ? 0 : -1;
+}
+
+void moments_free(moments *m)
+{
+    free(m->sum);
+    *m = (moments){0};
+}
+
+static int32_t *row_of(const moments *m, int row)
+{
+    return m->sum + row * (m->cells + 1);
+}
+
+void moments_add(moments *m, const climb_run *run)
+{
+    const int32_t n = m->samples, b = place_of(run->j, n), c = place_of(run->k, n), w[4] = {b, c, b * c, 1};
+    const int64_t from = run->from - m->low * n, to = run->to - m->low * n;
+    const int32_t in = (int32_t)(from % n), out = (int32_t)(to % n);
+    for (int i = 0; i < 3; i++) {
+        row_of(m, BEGINS + i)[from / n] += n * w[i];
+        row_of(m, LEFT + i)[from / n] -= in * w[i];
+        row_of(m, BEGINS + i)[to / n] -= n * w[i];
+        row_of(m, LEFT + i)[to / n] += out * w[i];
+    }
+    for (int i = 0; i < 4;
+         i++) { /* the places from `in` on have the sum in (n - in); those up to `out` -out (n - out) */
+        row_of(m, ALONG + i)[from / n] += in * (n - in) * w[i];
+        row_of(m, ALONG + i)[to / n] -= out * (n - out) * w[i];
+    }
+}
+
+void moments_close(moments *m, int64_t from, int64_t past)
+{
+    for (int r = 0; r < 3; r++) {
+        int32_t *begins = row_of(m, BEGINS + r), running = 0;
+        for (int64_t i = from; i < past; i++) {
+            running += begins[i];
+            begins[i] = running + row_of(m, LEFT + r)[i];
+        }
+    }
+}
+
+moments_sums moments_at(const moments *m, int64_t i, int64_t count)
+{
+    const moments_sums s = {count,
+                            {row_of(m, ALONG + 3)[i], row_of(m, BEGINS)[i], row_of(m, BEGINS + 1)[i],
+                             row_of(m, ALONG)[i], row_of(m, BEGINS + 2)[i], row_of(m, ALONG + 1)[i],
+                             row_of(m, ALONG + 2)[i]}};
+    return s;
+}
+
+void moments_forget(moments *m, int64_t from, int64_t past)
+{
+    for (int r = 0; r < MOMENTS_ROWS && from <= past; r++)
+        memset(row_of(m, r) + from, 0, (size_t)(past - from + 1) * sizeof *m->sum);
+}
+
+void moments_add_sample(moments_sums *s, int samples, int i, int j, int k)
+{
+    const int64_t x = place_of(i, samples), y = place_of(j, samples), z = place_of(k, samples);
+    const int64_t of[MOMENTS] = {x, y, z, x * y, y * z, z * x, x * y * z};
+    s->count++;
+    for (int n = 0; n < MOMENTS; n++)
+        s->of[n] += of[n];
+}
+
+int moments_list_add(moments_list *to, int64_t element, const moments_sums *s, int samples, err *e)
+{
+    static const int factors[MOMENTS] = {1, 1, 1, 2, 2, 2, 3};
+    const int64_t n = samples;
+    if (s->count == n * n * n)
+        return 0;
+    if (mem_grow(&to->voxel, &to->capacity, to->count + 1, sizeof *to->voxel, "moments of voxels", e))
+        return -1;
+    moments_voxel *v = &to->voxel[to->count++];
+    v->element = element;
+    for (int i = 0; i < MOMENTS; i++)
+        v->of[i] =
+            (float)((double)s->of[i] / (double)(s->count * n * (factors[i] > 1 ? n : 1) * (factors[i] > 2 ? n : 1)));
+    return 0;
+}
+
+int moments_list_join(moments_list *to, const moments_list *from, int64_t element, err *e)
+{
+    if (!from->count)
+        return 0;
+    if (mem_grow(&to->voxel, &to->capacity, to->count + from->count, sizeof *to->voxel, "moments of voxels", e))
+        return -1;
+    for (int64_t i = 0; i < from->count; i++) {
+        to->voxel[to->count] = from->voxel[i];
+        to->voxel[to->count++].element += element;
+    }
+    return 0;
+}
+
+/* ---- shares */
+
 int shares_create(shares *s, const grid *g, const shares_rule *rule, int32_t volumes, err *e)
 {
     *s = (shares){.rule = *rule, .low = g->low[0] / rule->samples, .cells = grid_cells(g, 0) / rule->samples};
     s->from = s->cells;
     s->slot = mem_array(volumes, sizeof *s->slot, "volumes", e);
-    return s->slot ? 0 : -1;
+    return s->slot && !(rule->moments && moments_create(&s->moment, rule->samples, s->low, s->cells, e)) ? 0 : -1;
+}
+
+void shares_list_free(shares_list *l)
+{
+    free(l->voxel);
+    free(l->cut.voxel);
+    *l = (shares_list){0};
 }
 
 void shares_free(shares *s)
@@ -19,6 +148,7 @@ void shares_free(shares *s)
     free(s->slot);
     free(s->volume);
     free(s->sum);
+    moments_free(&s->moment);
     *s = (shares){0};
 }
 
@@ -48,6 +178,8 @@ int shares_add(shares *s, const climb_run *run, err *e)
     left[from / samples] -= (int32_t)(from % samples);
     whole[to / samples] -= samples;
     left[to / samples] += (int32_t)(to % samples);
+    if (s->rule.moments)
+        moments_add(&s->moment, run);
     s->from = from / samples < s->from ? from / samples : s->from;
     s->past = (to - 1) / samples + 1 > s->past ? (to - 1) / samples + 1 : s->past;
     return 0;
@@ -77,6 +209,8 @@ static void forget(shares *s)
     for (int64_t n = 0; n < s->slots; n++)
         s->slot[s->volume[n]] = 0;
     s->slots = 0;
+    if (s->rule.moments)
+        moments_forget(&s->moment, s->from, s->past);
     s->from = s->cells;
     s->past = 0;
 }
@@ -116,7 +250,10 @@ static int add_share(shares *s, int64_t i, climb_run at, int64_t samples, shares
         return -1;
     list->voxel[list->count++] = voxel;
     kept[at.volume].kept++;
-    return 0;
+    if (!s->rule.moments)
+        return 0;
+    const moments_sums sums = moments_at(&s->moment, i, samples);
+    return moments_list_add(&list->cut, list->count - 1, &sums, s->rule.samples, e);
 }
 
 int shares_row(shares *s, int64_t j, int64_t k, climb_runs *to, shares_list *list, climb_count *kept, err *e)
@@ -125,6 +262,8 @@ int shares_row(shares *s, int64_t j, int64_t k, climb_runs *to, shares_list *lis
     double all = pow(s->rule.samples, 3);
     for (int64_t n = 0; n < s->slots; n++)
         count_samples(s, &s->sum[n * size]);
+    if (s->rule.moments)
+        moments_close(&s->moment, s->from, s->past);
     for (int64_t i = s->from; i < s->past; i++) {
         int64_t samples = total(s, i);
         if (samples == 0 || (double)samples < s->rule.least * all)

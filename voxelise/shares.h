@@ -14,10 +14,70 @@
 
 #include "voxelise/climb.h"
 
+/* ---- moments
+ *
+ * Of voxels that are enclosed in part: the means of xi, eta, zeta, xi eta, eta zeta, zeta xi and xi eta zeta, each from
+ * -1 to 1 across the voxel, over the samples that are inside. In units of half a sample's width all places are odd whole
+ * numbers, so sums are exact, in any order.
+ */
+
+enum { MOMENTS = 7 };
+
+typedef struct moments_voxel {
+    int64_t element;
+    float of[MOMENTS]; /* in the order above */
+} moments_voxel;
+
+/* In the order of the elements. */
+typedef struct moments_list {
+    moments_voxel *voxel; /* owned */
+    int64_t count, capacity;
+} moments_list;
+
+/* Sums over samples: how many, and of each product of places. */
+typedef struct moments_sums {
+    int64_t count, of[MOMENTS];
+} moments_sums;
+
+/* Adds a sample of a voxel of `samples` along a side: i, j, k from 0. */
+void moments_add_sample(moments_sums *s, int samples, int i, int j, int k);
+
+/* Adds a voxel to a list, unless all its samples are inside. */
+int moments_list_add(moments_list *to, int64_t element, const moments_sums *s, int samples, err *e);
+
+/* Adds a list, whose elements are numbered from `element` on. */
+int moments_list_join(moments_list *to, const moments_list *from, int64_t element, err *e);
+
+/* A row of voxels. */
+typedef struct moments {
+    int samples;
+    int64_t low, cells; /* of the lattice of voxels along x */
+    int32_t *sum;       /* MOMENTS_ROWS x (cells + 1) */
+} moments;
+
+/* low, cells: of the voxels along x. */
+int moments_create(moments *m, int samples, int64_t low, int64_t cells, err *e);
+void moments_free(moments *m);
+
+/* Counts a run of samples. */
+void moments_add(moments *m, const climb_run *run);
+
+/* Makes sums of what was counted, in voxels from <= i < past of the row, from low. */
+void moments_close(moments *m, int64_t from, int64_t past);
+
+/* Those of a voxel that has so many samples. */
+moments_sums moments_at(const moments *m, int64_t i, int64_t count);
+
+/* Forgets the row, of which voxels from <= i < past were counted. */
+void moments_forget(moments *m, int64_t from, int64_t past);
+
+/* ---- shares */
+
 /* What makes an element. */
 typedef struct shares_rule {
     int samples;  /* N, from 1 to SHARES_MOST */
     double least; /* the share of a voxel from which on it is one; some sample has to be inside in any case */
+    bool moments; /* of voxels that are enclosed in part are found too */
 } shares_rule;
 
 enum { SHARES_MOST = 16 };
@@ -31,6 +91,7 @@ typedef struct shares {
     int32_t *sum; /* slots x 2 x (cells + 1): what begins or ends to fill each voxel, and what is left over in it */
     int64_t sum_capacity;
     int64_t from, past; /* voxels that samples lie in, from low */
+    moments moment;     /* of the row, where they are wanted */
 } shares;
 
 /* g: the lattice of samples. */
@@ -50,7 +111,10 @@ typedef struct shares_voxel {
 typedef struct shares_list {
     shares_voxel *voxel; /* owned */
     int64_t count, capacity;
+    moments_list cut; /* owned */
 } shares_list;
+
+void shares_list_free(shares_list *l);
 
 /* The voxels of row (j, k), from the samples counted since the last row: each belongs to the volume that has the most
  * of them, the first of two. list: grows by one for each voxel of the runs. kept: volumes, grow by their voxels: `kept`

@@ -148,6 +148,34 @@ static void put_element(voxels *to, int64_t at, const counted *c, int samples)
     to->mixture[at] = c->mix < 0 ? 0 : (float)((double)c->second / (double)(c->first + c->second));
 }
 
+/* The moments of an element of a voxel, from the samples of its parts. */
+static int put_moments(const split *s, int64_t cell, int32_t order, voxels *to, int64_t at, int samples, err *e)
+{
+    const pieces_cell *c = &s->of->cell[cell];
+    const int64_t words = pieces_words(samples), n = samples;
+    moments_sums sums = {0};
+    for (int32_t part = 0; part < c->parts; part++) {
+        const uint64_t *bits = &s->of->bits[c->bits + part * words];
+        if (s->order[s->first[cell] + part] != order)
+            continue;
+        for (int64_t i = 0; i < n * n * n; i++)
+            if (bits[i / 64] >> (i % 64) & 1)
+                moments_add_sample(&sums, samples, (int)(i % n), (int)(i / n % n), (int)(i / n / n));
+    }
+    return moments_list_add(&to->cut, at, &sums, samples, e);
+}
+
+/* Those of a voxel that is one element; *next: the first in x's list that is not taken yet. */
+static int copy_moments(voxels *to, int64_t at, const voxels *x, int64_t from, int64_t *next, err *e)
+{
+    while (*next < x->cut.count && x->cut.voxel[*next].element < from)
+        ++*next;
+    if (*next == x->cut.count || x->cut.voxel[*next].element != from)
+        return 0;
+    const moments_list one = {.voxel = &x->cut.voxel[*next], .count = 1};
+    return moments_list_join(&to->cut, &one, at - from, e);
+}
+
 static void copy_element(voxels *to, int64_t at, const voxels *x, int64_t from)
 {
     to->fraction[at] = x->fraction[from];
@@ -166,7 +194,7 @@ static int add_run(climb_runs *to, climb_run run, err *e)
 static int repeat(const split *s, const voxels *x, voxels *to, int samples, err *e)
 {
     climb_runs runs = {0};
-    int64_t element = 0, at = 0, cell = 0;
+    int64_t element = 0, at = 0, cell = 0, cut = 0;
     int status = 0;
     for (int64_t r = 0; r < x->runs && !status; r++) {
         climb_run rest = x->run[r];
@@ -175,14 +203,17 @@ static int repeat(const split *s, const voxels *x, voxels *to, int samples, err 
                 cell++;
             const bool here = cell < s->of->cells && s->of->cell[cell].element == element;
             if (!here || elements_of(s, cell) == 1) {
-                copy_element(to, at++, x, element);
+                copy_element(to, at, x, element);
+                status = copy_moments(to, at++, x, element, &cut, e);
                 continue;
             }
             status = add_run(&runs, (climb_run){rest.from, i, rest.j, rest.k, rest.volume}, e);
             for (int32_t n = 0; n < elements_of(s, cell) && !status; n++) {
                 const counted c = count_element(s, cell, n);
-                put_element(to, at++, &c, samples);
-                status = add_run(&runs, (climb_run){i, i + 1, rest.j, rest.k, c.volume}, e);
+                put_element(to, at, &c, samples);
+                status = x->cut.count && put_moments(s, cell, n, to, at, samples, e) ? -1 : 0;
+                at++;
+                status = status ? -1 : add_run(&runs, (climb_run){i, i + 1, rest.j, rest.k, c.volume}, e);
             }
             rest.from = i + 1;
         }
@@ -221,6 +252,8 @@ int split_voxels(const split *s, voxels *x, int samples, int32_t volumes, err *e
     free(x->fraction);
     free(x->mix);
     free(x->mixture);
+    free(x->cut.voxel);
+    x->cut = to.cut;
     x->run = to.run, x->fraction = to.fraction, x->mix = to.mix, x->mixture = to.mixture;
     x->runs = to.runs, x->elements = to.elements;
     count_kept(x, volumes);

@@ -26,11 +26,15 @@ struct options {
     opt_lengths size, origin, box;
     int64_t cells, fraction;
     double least;
-    int slits; /* a slits_choice */
+    int slits;  /* a slits_choice */
+    int strain; /* a strain_choice */
     bool allow_open, check;
 };
 
-/* --slits, as its choices are in order; what is not given follows --fraction and --layers. */
+/* --strain, as its choices are in order. */
+enum strain_choice { STRAIN_NOT_GIVEN = -1, STRAIN_ENCLOSED, STRAIN_CENTRE };
+
+/* --slits, likewise; what is not given follows --fraction and --layers. */
 enum slits_choice { SLITS_NOT_GIVEN = -1, SLITS_ON, SLITS_OFF };
 
 #define TO(field) offsetof(struct options, field)
@@ -55,6 +59,8 @@ static const opt option_list[] = {
      "make elements of voxels that are partly enclosed, with their share from N^3 samples"},
     {OPT_ACTION, 0, "least", "SHARE", OPT_NUMBER, TO(least), 0, 1, NULL, 0,
      "smallest share that makes an element [default any]"},
+    {OPT_ACTION, 0, "strain", "enclosed|centre", OPT_CHOICE, TO(strain), 0, 0, "enclosed|centre", 0,
+     "where the strain of a partly enclosed voxel is taken [default centre]"},
     {OPT_ACTION, 0, "slits", "on|off", OPT_CHOICE, TO(slits), 0, 0, "on|off", 0,
      "part what a surface lies between [default on with --fraction or --layers]"},
     {OPT_INPUT, 0, "allow-open", NULL, OPT_FLAG, TO(allow_open), 0, 0, NULL, 0, "accept open surfaces, with a warning"},
@@ -148,11 +154,14 @@ static int check_options(job *j, err *e)
         return err_usage(e, "-s and -n both give the voxel size; expected one of them");
     if (o->size.count == 2 || !all_positive(&o->size))
         return err_usage(e, "-s: expected one length, or three between commas, above 0");
-    if (o->check && (o->fraction > 0 || !isnan(o->least) || o->slits >= 0 || o->origin.count || o->box.count))
+    if (o->check &&
+        (o->fraction > 0 || !isnan(o->least) || o->slits >= 0 || o->strain >= 0 || o->origin.count || o->box.count))
         return err_usage(e, "--check looks at surfaces and makes no voxels; expected it without --fraction, --least, "
-                            "--slits, --origin and --box");
+                            "--strain, --slits, --origin and --box");
     if (!isnan(o->least) && o->fraction < 0)
         return err_usage(e, "--least is for --fraction N; expected both, or neither");
+    if (o->strain >= 0 && o->fraction < 0)
+        return err_usage(e, "--strain is for --fraction N; expected both, or neither");
     if (!box_is_upright(j))
         return err_usage(e, "--box: expected X0,Y0,Z0,X1,Y1,Z1 with X0 < X1, Y0 < Y1 and Z0 < Z1");
     return strcmp(j->path, "-") ? 0 : tool_need_stdin("an OBJ", e);
@@ -279,10 +288,15 @@ static int look_inside(job *j, const grid *samples, const shares_rule *rule, err
     return status;
 }
 
+static bool takes_moments(const struct options *o)
+{
+    return o->fraction > 0 && o->strain == STRAIN_ENCLOSED;
+}
+
 static int find_voxels(job *j, err *e)
 {
     bool by_shares = j->o->fraction > 0;
-    shares_rule rule = {(int)j->o->fraction, isnan(j->o->least) ? 0 : j->o->least};
+    shares_rule rule = {(int)j->o->fraction, isnan(j->o->least) ? 0 : j->o->least, takes_moments(j->o)};
     if (by_shares && grid_divide(&j->samples, &j->g, rule.samples, e))
         return -1;
     if (by_shares ? look_inside(j, &j->samples, &rule, e) : look_inside(j, &j->g, NULL, e))
@@ -465,36 +479,15 @@ static int check_volumes(const checking *c, err *e)
     return 0;
 }
 
-/* What was found: the tables, and with -v all of each surface and volume. */
-static int put_report(const checking *c, err *e)
-{
-    const tool *t = c->j->t;
-    size_t size;
-    out *to = out_open(t->common->output, t->common->gzip, e);
-    int status = to ? report_table(to, c->surfaces, e) : -1;
-    if (!status) {
-        out_text(to, "\n");
-        status = report_table(to, c->volumes, e);
-    }
-    if (status) {
-        out_discard(to);
-        return -1;
-    }
-    const unsigned char *detail = out_bytes(c->detail, &size);
-    if (t->common->verbose) {
-        out_text(to, "\n");
-        out_write(to, detail, size);
-    }
-    return out_close(to, e);
-}
-
 static int find_report(checking *c, err *e)
 {
     c->face = mem_array(c->j->surface.faces, sizeof *c->face, "polygons", e);
     c->detail = c->face ? out_memory(e) : NULL;
     c->surfaces = c->detail ? report_surfaces(c->voxel != NULL, e) : NULL;
     c->volumes = c->surfaces ? report_volumes(e) : NULL;
-    return c->volumes && !check_surfaces(c, e) && !check_volumes(c, e) ? put_report(c, e) : -1;
+    return c->volumes && !check_surfaces(c, e) && !check_volumes(c, e)
+               ? report_write(c->j->t, c->surfaces, c->volumes, c->detail, e)
+               : -1;
 }
 
 /* Writes the report; fails where a volume is open, as a run without --check would. */
@@ -569,7 +562,8 @@ static int work(job *j, model *m, err *e)
 
 static int run_tool(int argc, char **argv)
 {
-    struct options o = {.cells = -1, .fraction = -1, .least = NAN, .slits = SLITS_NOT_GIVEN};
+    struct options o = {
+        .cells = -1, .fraction = -1, .least = NAN, .slits = SLITS_NOT_GIVEN, .strain = STRAIN_NOT_GIVEN};
     err e = {0};
     tool t = {0};
     stage s = {0};

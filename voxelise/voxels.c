@@ -273,10 +273,12 @@ static double crossed_voxels(const work *w)
     return crossed / pow(w->rule->samples, 2);
 }
 
-/* What the parts of `elements` voxels take at most, with a number for each in two tables (split.h). */
+/* What the parts of `elements` voxels take at most, with a number for each in two tables (split.h), and moments. */
 static double part_bytes(const work *w, double elements)
 {
-    return w->cut ? fmin(elements, crossed_voxels(w)) * (pieces_bytes(w->rule->samples) + 2 * sizeof(int64_t)) : 0;
+    const double parts = w->cut ? pieces_bytes(w->rule->samples) + 2 * sizeof(int64_t) : 0;
+    const double each = w->rule && w->rule->moments ? 3 * sizeof(moments_voxel) : 0; /* twice here, and written */
+    return parts + each > 0 ? fmin(elements, crossed_voxels(w)) * (parts + each) : 0;
 }
 
 static int check_memory(const work *w, pool *threads, err *e)
@@ -348,15 +350,14 @@ static int join_chunks(voxels *x, const work *w, err *e)
         if (c->to.runs)
             memcpy(x->run + at, c->to.run, (size_t)c->to.runs * sizeof *x->run);
         put_shares(x, voxel, &c->share);
-        if (pieces_list_join(&x->part, &c->part, voxel, e))
+        if (pieces_list_join(&x->part, &c->part, voxel, e) || moments_list_join(&x->cut, &c->share.cut, voxel, e))
             return -1;
         at += c->to.runs;
         voxel += c->share.count;
         free(c->to.run);
-        free(c->share.voxel);
+        shares_list_free(&c->share);
         pieces_list_free(&c->part);
         c->to.run = NULL;
-        c->share.voxel = NULL;
     }
     return 0;
 }
@@ -395,7 +396,7 @@ int voxels_find(voxels *x, const inside *test, const int32_t *level, int32_t vol
 out:
     for (int64_t i = 0; w.chunk && i < test->slabs; i++) {
         free(w.chunk[i].to.run);
-        free(w.chunk[i].share.voxel);
+        shares_list_free(&w.chunk[i].share);
         pieces_list_free(&w.chunk[i].part);
     }
     free(w.chunk);
@@ -412,6 +413,7 @@ void voxels_free(voxels *x)
     free(x->fraction);
     free(x->mix);
     free(x->mixture);
+    free(x->cut.voxel);
     pieces_list_free(&x->part);
     *x = (voxels){0};
 }

@@ -17,6 +17,7 @@ typedef struct voxels {
     float *fraction;    /* elements, by shares; otherwise NULL */
     int32_t *mix;       /* elements: the second volume, -1 = none; NULL where no element has one */
     float *mixture;     /* elements: its share of what is enclosed; likewise */
+    moments_list cut;   /* by shares, where moments are looked for: of elements that are enclosed in part */
     pieces_list part;   /* by shares, where slits are looked for */
 } voxels;
 

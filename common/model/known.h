@@ -59,6 +59,10 @@ typedef struct known {
       "volume it belongs to")                                                                                          \
     X("element.fraction", MODEL_F32, "1", "element", 1, 1, 0, KNOWN_FROM, 0, 1, "voxelise",                            \
       "share of it that is enclosed: the part that it has of its mass and forces; without the array all is")           \
+    X("cut.element", MODEL_I32, "@element", "cut", 1, 1, KNOWN_EVERY, KNOWN_ANY, 0, 0, "voxelise",                     \
+      "element that is enclosed in part and takes its strain as the mean over that part; ascending")                   \
+    X("cut.moments", MODEL_F32, "1", "cut", 7, 7, 0, KNOWN_FROM, -1, 1, "voxelise",                                    \
+      "means over that part of xi, eta, zeta, xi eta, eta zeta, zeta xi, xi eta zeta, each from -1 to 1 across it")    \
     X("element.mix", MODEL_I32, "@volume", "element", 1, 1, 0, KNOWN_ANY, 0, 0, "voxelise",                            \
       "second volume that it is mixed of, -1 = none")                                                                  \
     X("element.mixture", MODEL_F32, "1", "element", 1, 1, 0, KNOWN_FROM, 0, 1, "voxelise",                             \

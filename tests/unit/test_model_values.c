@@ -122,7 +122,7 @@ static void range(const known *k)
         less = nextafter(k->low, -INFINITY);
     } else if (k->type == MODEL_F32) {
         past = (double)nextafterf((float)k->high, INFINITY);
-        less = -1e-9;
+        less = k->low - 1e-6;
     }
     put_rows(k, k->low, k->high, rows);
     judge(k, k->columns_max, rows, NULL);

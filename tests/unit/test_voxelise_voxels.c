@@ -242,6 +242,37 @@ static int64_t owner_of(const voxels *samples, int n, const int *cell, int64_t *
     return *total ? best : -1;
 }
 
+/* The means of all products of places in a cell, over its samples. */
+static void means_of(const voxels *samples, int n, const int *cell, int64_t total, double mean[MOMENTS])
+{
+    memset(mean, 0, MOMENTS * sizeof *mean);
+    for (int64_t r = 0; r < samples->runs; r++) {
+        const climb_run *a = &samples->run[r];
+        for (int i = a->from; i < a->to; i++) {
+            const int at[3] = {i - n * cell[0], a->j - n * cell[1], a->k - n * cell[2]};
+            double x[3];
+            if (at[0] < 0 || at[0] >= n || at[1] < 0 || at[1] >= n || at[2] < 0 || at[2] >= n)
+                continue;
+            for (int k = 0; k < 3; k++)
+                x[k] = (2 * at[k] + 1) / (double)n - 1;
+            const double all[MOMENTS] = {x[0], x[1], x[2], x[0] * x[1], x[1] * x[2], x[2] * x[0], x[0] * x[1] * x[2]};
+            for (int k = 0; k < MOMENTS; k++)
+                mean[k] += all[k] / (double)total;
+        }
+    }
+}
+
+/* Whether the next of the moments found is this element's, as it has to be if it is enclosed in part. */
+static bool has_moments(const voxels *x, int64_t element, int64_t *next, bool in_part, const double mean[MOMENTS])
+{
+    const bool has = *next < x->cut.count && x->cut.voxel[*next].element == element;
+    bool good = has == in_part;
+    for (int k = 0; good && has && k < MOMENTS; k++)
+        good = fabs((double)x->cut.voxel[*next].of[k] - mean[k]) < 1e-6;
+    *next += has;
+    return good;
+}
+
 /* Voxels of 2 cells by shares, against the samples one by one. */
 static bool same_as_samples(const scene *s, const shares_rule *rule)
 {
@@ -259,14 +290,19 @@ static bool same_as_samples(const scene *s, const shares_rule *rule)
                 unroll(&got, volume);
     good = good && got.elements == again.elements && got.runs == again.runs &&
            memcmp(got.fraction, again.fraction, (size_t)got.elements * sizeof *got.fraction) == 0;
-    int64_t at = 0, all = (int64_t)rule->samples * rule->samples * rule->samples;
+    int64_t at = 0, next = 0, all = (int64_t)rule->samples * rule->samples * rule->samples;
     for (int c = 0; good && c < CELLS; c++) {
         int cell[3] = {c % SIDE - 1, c / SIDE % SIDE - 1, c / SIDE / SIDE - 1};
         int64_t total, owner = owner_of(&samples, rule->samples, cell, &total);
         bool is_element = total > 0 && (double)total >= rule->least * (double)all;
         good = volume[c] == (is_element ? owner : -1);
-        if (good && is_element)
-            good = got.fraction[at++] == (float)((double)total / (double)all);
+        double mean[MOMENTS];
+        if (!good || !is_element)
+            continue;
+        means_of(&samples, rule->samples, cell, total, mean);
+        good = has_moments(&got, at, &next, rule->moments && total < all, mean) &&
+               got.fraction[at] == (float)((double)total / (double)all);
+        at++;
     }
     voxels_free(&got);
     voxels_free(&samples);
@@ -276,7 +312,8 @@ static bool same_as_samples(const scene *s, const shares_rule *rule)
 
 static void test_shares(void)
 {
-    static const shares_rule rule[] = {{1, 0}, {2, 0}, {3, 0.4}, {4, 0.5}, {5, 1}, {7, 0.1}};
+    static const shares_rule rule[] = {{1, 0, true},   {2, 0, true}, {3, 0.4, true},
+                                       {4, 0.5, true}, {5, 1, true}, {7, 0.1, false}};
     int scenes = 60, wrong = 0;
     for (int n = 0; n < scenes; n++) {
         scene s;
