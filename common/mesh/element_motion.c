@@ -3,6 +3,7 @@
 #include "mesh/gradient.h"
 #include "mesh/hexahedron.h"
 #include "mesh/lattice.h"
+#include "physics/element_cut.h"
 
 #include <string.h>
 
@@ -14,7 +15,7 @@ int element_mesh_of(element_mesh *to, const model *m, err *e)
         return -1;
     *to = (element_mesh){.node = node->i32, .corners = node->columns, .elements = node->rows, .rest = rest->f64};
     to->is_lattice = node->columns == 8 && model_meta_of(m, "lattice.spacing");
-    if (to->is_lattice && lattice_of(m, &l, e))
+    if (to->is_lattice && (lattice_of(m, &l, e) || cut_moments_of(&to->cut, m, e)))
         return -1;
     memcpy(to->side, l.spacing, sizeof to->side);
     return 0;
@@ -43,13 +44,15 @@ static element_any shape_of(const element_mesh *m, const int32_t *node, double *
     return element_any_of(slope, twist, volume, basis);
 }
 
-static element_motion of_hexahedron(const element_mesh *m, const int32_t *node, const double *u)
+/* cut: the moments of one that is cut, or NULL. */
+static element_motion of_hexahedron(const element_mesh *m, const int32_t *node, const float *cut, const double *u)
 {
     element_motion to = {.volume = m->side[0] * m->side[1] * m->side[2]};
     element_modes x = modes_of(node, u, 0), y = modes_of(node, u, 1), z = modes_of(node, u, 2);
     if (m->is_lattice) {
         to.squares = hourglass_squares(m->side);
-        to.h = element_gradient(x, y, z, element_box(m->side[0], m->side[1], m->side[2]).slope);
+        const element_vector slope = element_box(m->side[0], m->side[1], m->side[2]).slope;
+        to.h = cut ? element_cut_gradient(x, y, z, slope, element_cut_of(cut)) : element_gradient(x, y, z, slope);
     } else {
         to.any = shape_of(m, node, &to.squares);
         to.volume = to.any.volume;
@@ -75,5 +78,6 @@ static element_motion of_tetrahedron(const element_mesh *m, const int32_t *node,
 element_motion element_motion_of(const element_mesh *m, int64_t element, const double *u)
 {
     const int32_t *node = m->node + element * m->corners;
-    return m->corners == 8 ? of_hexahedron(m, node, u) : of_tetrahedron(m, node, u);
+    const float *cut = m->cut.count ? cut_moments_at(&m->cut, element) : NULL;
+    return m->corners == 8 ? of_hexahedron(m, node, cut, u) : of_tetrahedron(m, node, u);
 }

@@ -5,7 +5,7 @@
 #ifndef SINEW_ELEMENT_MOTION_H
 #define SINEW_ELEMENT_MOTION_H
 
-#include "model/model.h"
+#include "mesh/cut_moments.h"
 #include "physics/element_any.h"
 
 typedef struct element_mesh {
@@ -15,11 +15,13 @@ typedef struct element_mesh {
     const double *rest; /* nodes x 3, m */
     bool is_lattice;    /* hexahedra, all boxes of `side` */
     double side[3];     /* m */
+    cut_moments cut;    /* of boxes: whose gradient is its mean over what is enclosed */
 } element_mesh;
 
 typedef struct element_motion {
-    element_tensor h; /* grad u: at the centre; its mean over an element that is no box */
-    double volume;    /* m3, at rest */
+    element_tensor
+        h;         /* grad u: at the centre; its mean over an element that is no box, or over the part of a cut one */
+    double volume; /* m3, at rest */
     /* Of hexahedra: */
     hourglass_modes modes;
     double squares;  /* 1/m2: sum of B^2 over corners and axes */

@@ -20,7 +20,8 @@
     X(MIXTURES, "elements mixed of two volumes")                                                                       \
     X(CURVES, "muscles with a passive stress or an optimum")                                                           \
     X(SERIES, "muscles in series with a spring: vmax=")                                                                \
-    X(FIBRES, "fibres that resist being stretched")
+    X(FIBRES, "fibres that resist being stretched")                                                                    \
+    X(CUTS, "mean strain of cut elements")
 
 enum executor_feature {
 #define EXECUTOR_NUMBER(name, words) EXECUTOR_NUMBER_##name,

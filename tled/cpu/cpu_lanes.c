@@ -18,6 +18,7 @@
 #define ELEMENT_LANES (VECTORS_BYTES / 8)
 #define CPU_PASS      VECTORS_OF(CPU_JOIN(cpu_pass_double_, CPU_FORM, _))
 #endif
+#include "physics/element_cut.h"
 #include "tled/problem/node.h"
 
 #define THE_FORM CPU_JOIN(FORM_, CPU_FORM, )
@@ -285,6 +286,19 @@ static inline bool is_fibred(const cpu_work *w, const rows_run *run)
     return fibres_any(&w->p->fibres, run->volume) || fibres_any(&w->p->fibres, run->mix);
 }
 
+/* The moments of a run that is cut; 0 in its elements that are whole. */
+static inline element_cut cut_of(const cpu_work *w, const rows_run *run)
+{
+    const int64_t at = (int64_t)run->cut * (6 * LANES);
+    const element_cut c = {load(w->cut, at),
+                           load(w->cut, at + LANES),
+                           load(w->cut, at + 2 * LANES),
+                           load(w->cut, at + 3 * LANES),
+                           load(w->cut, at + 4 * LANES),
+                           load(w->cut, at + 5 * LANES)};
+    return c;
+}
+
 /* Contractile elements of a run, which go on by the step that this pass ends. Cells after the run's are another's. */
 static inline void contract(const cpu_work *w, const rows_run *run, int32_t volume, element_tensor h, real_one *at,
                             element_fibre *fibre)
@@ -299,20 +313,23 @@ static inline void contract(const cpu_work *w, const rows_run *run, int32_t volu
         at[run->cell + lane] = fibre->series.contractile[lane];
 }
 
-/* Those of both volumes. */
+/* Those of both volumes. is_cut: as of any_forces_of. */
 static inline void contract_both(const cpu_work *w, const rows_run *run, const element_field *u, element_shape shape,
-                                 element_fibre *fibre, element_fibre *second)
+                                 bool is_cut, element_fibre *fibre, element_fibre *second)
 {
-    const element_tensor h =
-        element_gradient(element_modes_of(u->x), element_modes_of(u->y), element_modes_of(u->z), shape.slope);
+    const element_modes x = element_modes_of(u->x), y = element_modes_of(u->y), z = element_modes_of(u->z);
+    const element_tensor h = is_cut ? element_cut_gradient(x, y, z, shape.slope, cut_of(w, run))
+                                    : element_gradient(x, y, z, shape.slope);
     if (is_serial(w, run->volume) && w->fibre[0])
         contract(w, run, run->volume, h, w->contractile, fibre);
     if (is_serial(w, run->mix) && w->mixfibre[0])
         contract(w, run, run->mix, h, w->mixcontractile, second);
 }
 
-/* Elements of which a volume has fibres that resist being stretched, or a muscle in series with a spring. */
-static inline void fibred_forces_of(const cpu_work *w, const rows_run *run, element_shape shape, hourglass_kind control)
+/* Elements of any kind: cut ones, and those of which a volume has fibres that resist being stretched, or a muscle in
+ * series with a spring. is_cut: a constant, as is control of those that are not. */
+static inline void any_forces_of(const cpu_work *w, const rows_run *run, element_shape shape, hourglass_kind control,
+                                 bool is_cut)
 {
     const bool mixed = run->mix >= 0;
     const int which = muscle_of(w, w->fibre, run->volume), which_second = muscle_of(w, w->mixfibre, run->mix);
@@ -323,20 +340,30 @@ static inline void fibred_forces_of(const cpu_work *w, const rows_run *run, elem
     element_fibre fibre = fibre_of(w, w->fibre, run, run->volume, own, which);
     element_fibre second = fibre_of(w, w->mixfibre, run, mixed ? run->mix : run->volume, other, which_second);
     if (w->p->serial)
-        contract_both(w, run, &u, shape, &fibre, &second);
+        contract_both(w, run, &u, shape, is_cut, &fibre, &second);
     const fibre_set sets[2] = {fibres_of(w, run->cell, run->volume, w->fibre, w->family, own),
                                fibres_of(w, run->cell, run->mix, w->mixfibre, w->mixfamily, other)};
-    const element_field f = element_force_fibred(THE_FORM, control, u, shape, law, fibre, which, second, which_second,
-                                                 sets, is_fibred(w, run) ? 1 + mixed : 0);
+    const int count = is_cut || is_fibred(w, run) ? 1 + mixed : 0;
+    element_field f;
+    if (is_cut)
+        f = element_force_cut(THE_FORM, control, u, shape, law, fibre, which, second, which_second, sets, count,
+                              cut_of(w, run));
+    else
+        f = element_force_fibred(THE_FORM, control, u, shape, law, fibre, which, second, which_second, sets, count);
     add_field(w, run, &f);
 }
 
 static __attribute__((noinline)) void fibred_forces(const cpu_work *w, const rows_run *run, element_shape shape)
 {
     if (w->p->control.kind == HOURGLASS_PHYSICAL)
-        fibred_forces_of(w, run, shape, HOURGLASS_PHYSICAL);
+        any_forces_of(w, run, shape, HOURGLASS_PHYSICAL, false);
     else
-        fibred_forces_of(w, run, shape, HOURGLASS_ISOTROPIC);
+        any_forces_of(w, run, shape, HOURGLASS_ISOTROPIC, false);
+}
+
+static __attribute__((noinline)) void cut_forces(const cpu_work *w, const rows_run *run, element_shape shape)
+{
+    any_forces_of(w, run, shape, w->p->control.kind, true);
 }
 
 /* One component of a node that the script displaces or pushes. */
@@ -352,8 +379,9 @@ static void move_extra(const cpu_work *w, int64_t at, int64_t n, int a, node_fac
     for (int32_t i = p->force_start[n]; i < p->force_start[n + 1]; i++)
         net += (real_one)loads_entry(p, i, w->now, a, (double)u);
     if (hold == HOLD_FREE)
-        acceleration =
-            (p->gravity < 0 ? 0 : (real_one)w->now[3 * p->gravity + a]) + net * ((const real_one *)w->mass_inverse)[at];
+        acceleration = (p->gravity < 0 ? 0 : (real_one)w->now[3 * p->gravity + a]) *
+                           (w->weight ? ((const real_one *)w->weight)[at] : 1) +
+                       net * ((const real_one *)w->mass_inverse)[at];
     if (hold == HOLD_FREE && w->what & PASS_FINISH)
         *v = *v * k.keep + k.half * acceleration;
     if (!(w->what & PASS_BEGIN))
@@ -383,7 +411,8 @@ static inline void move_nodes(const cpu_work *w, const rows_layer *l, int a, nod
         const real_mask mine = first_lanes(l->nodes - i) & ((bits & NODE_EXTRA) == 0);
         const real_mask free = mine & ((bits & (NODE_FREE << a)) != 0);
         const real sum = load(w->sum[a], at), old = load(w->velocity[a], at), u = load(w->from[a], at);
-        const real acceleration = gravity + -sum * load(w->mass_inverse, at);
+        const real push = -sum * load(w->mass_inverse, at);
+        const real acceleration = w->weight ? gravity * load(w->weight, at) + push : gravity + push;
         real v = old, to = load(w->to[a], at);
         if (finish)
             v = REAL_SELECT(free, node_finish(v, acceleration, k), v);
@@ -404,7 +433,9 @@ static inline void layer_forces(const cpu_work *w, const rows_layer *l, element_
 {
     const bool fibred = w->p->fibres.of, serial = w->p->serial;
     for (const rows_run *run = w->r->run + l->run; run < w->r->run + l->run + l->runs; run++)
-        if (fibred && is_fibred(w, run))
+        if (w->cut && run->cut >= 0)
+            cut_forces(w, run, shape);
+        else if (fibred && is_fibred(w, run))
             fibred_forces(w, run, shape);
         else if (serial && (is_serial(w, run->volume) || is_serial(w, run->mix)))
             fibred_forces(w, run, shape);

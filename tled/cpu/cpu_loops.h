@@ -45,6 +45,7 @@ struct tled_state {
     number *mass_inverse;             /* rows.nodes */
     uint8_t *flags;                   /* rows.nodes: NODE_* */
     number *fibre, *fraction;         /* cells, with padding: 3 x and 1 x; or NULL */
+    number *cut, *weight;             /* cpu_work's (cpu_cut.h) */
     number *mixfibre, *mixture, *law; /* likewise; law: a law's numbers x */
     number *family, *mixfamily;       /* likewise, of families at an angle to the fibre: 6 x */
     number *shape, *force;            /* a mesh's: cpu_work's, as is: */
@@ -317,6 +318,14 @@ static int cpu_fetch(cpu_state *s, int slot, const field_values *to, err *e)
     return 0;
 }
 
+static int make_numbers(number **to, int64_t count, int columns, err *e)
+{
+    *to = mem_array(count, (size_t)columns * sizeof **to, "the solver", e);
+    return *to ? 0 : -1;
+}
+
+#include "tled/cpu/cpu_cut.h"
+
 static int64_t cpu_bytes(const cpu_state *s)
 {
     const rows *r = &s->rows;
@@ -328,7 +337,7 @@ static int64_t cpu_bytes(const cpu_state *s)
         numbers += s->slot[i] ? numbers_of(s, FIELD_IN_FRAMES) : 0;
     return numbers * (int64_t)sizeof(number) + r->nodes * (7 * (int64_t)sizeof(number) + 1 + 4) +
            r->runs * (int64_t)sizeof *r->run + r->cells * (cells * (int64_t)sizeof(number) + 4) + s->mesh_bytes +
-           followers_bytes(s->p->followers);
+           cut_bytes(s) + followers_bytes(s->p->followers);
 }
 
 /* ---- life */
@@ -347,6 +356,8 @@ static void cpu_destroy(cpu_state *s)
     free(s->flags);
     free(s->fibre);
     free(s->fraction);
+    free(s->cut);
+    free(s->weight);
     free(s->mixfibre);
     free(s->family);
     free(s->mixfamily);
@@ -362,12 +373,6 @@ static void cpu_destroy(cpu_state *s)
     free(s->next);
     followers_room_free(&s->followers);
     free(s);
-}
-
-static int make_numbers(number **to, int64_t count, int columns, err *e)
-{
-    *to = mem_array(count, (size_t)columns * sizeof **to, "the solver", e);
-    return *to ? 0 : -1;
 }
 
 /* Those arrays over cells that the problem has. */
@@ -411,7 +416,7 @@ static int allocate(cpu_state *s, err *e)
 {
     const int64_t nodes = s->rows.nodes;
     if (allocate_fields(s, e) || make_numbers(&s->spare, nodes, 3, e) || make_numbers(&s->sum, nodes, 3, e) ||
-        make_numbers(&s->mass_inverse, nodes, 1, e) || allocate_cells(s, e))
+        make_numbers(&s->mass_inverse, nodes, 1, e) || allocate_cells(s, e) || cut_allocate(s, e))
         return -1;
     s->kind = mem_array(s->p->volumes, (size_t)cpu_kind_numbers(s->p->form) * sizeof *s->kind, "the solver", e);
     s->flags = mem_array(nodes, 1, "the solver", e);
@@ -439,18 +444,7 @@ static void fill_nodes(cpu_state *s)
         put_in(layout_of(s, i), p->at_start.of[i], s->field[i]);
 }
 
-/* The directions of families in a cell, where they are not those of fibres. */
-static void fill_families(cpu_state *s, int64_t cell)
-{
-    const int64_t cells = s->rows.cells + ROWS_PAD;
-    fibre_local at[2];
-    const int count = s->family ? fibres_at(&s->p->fibres, s->rows.cell_element[cell], at) : 0;
-    for (int i = 0; i < count; i++) {
-        number *to = at[i].is_second ? s->mixfamily : s->family;
-        for (int k = 0; k < 3 * FIBRE_FAMILIES; k++)
-            to[k * cells + cell] = (number)at[i].family[k / 3][k % 3];
-    }
-}
+#include "tled/cpu/cpu_families.h"
 
 static void fill_cells(cpu_state *s)
 {
@@ -481,23 +475,6 @@ static void fill_cells(cpu_state *s)
     }
 }
 
-/* Where the families' directions are: with the fibres, unless any are at an angle to these. */
-static void find_families(cpu_state *s)
-{
-    cpu_work *w = &s->work;
-    const int64_t cells = s->rows.cells + ROWS_PAD;
-    for (int a = 0; a < 3; a++) {
-        w->family[0][a] = w->fibre[a];
-        w->mixfamily[0][a] = w->mixfibre[a];
-    }
-    for (int k = 0; k < 3 * FIBRE_FAMILIES; k++) {
-        if (s->family)
-            w->family[k / 3][k % 3] = s->family + k * cells;
-        if (s->mixfamily)
-            w->mixfamily[k / 3][k % 3] = s->mixfamily + k * cells;
-    }
-}
-
 static void make_work(cpu_state *s)
 {
     cpu_work *w = &s->work;
@@ -507,6 +484,8 @@ static void make_work(cpu_state *s)
     w->mass_inverse = s->mass_inverse;
     w->flags = s->flags;
     w->fraction = s->fraction;
+    w->cut = s->cut;
+    w->weight = s->weight;
     w->mixture = s->mixture;
     w->shape = s->shape;
     w->group_node = s->group_node;
@@ -552,6 +531,7 @@ static cpu_state *create_by(const cpu_method *method, const tled_problem *proble
     }
     fill_nodes(s);
     fill_cells(s);
+    cut_fill(s);
     make_work(s);
     return s;
 }
@@ -585,10 +565,12 @@ static int64_t cpu_computed(const cpu_state *s)
 
 enum { CPU_FEATURES = EXECUTOR_USUAL | EXECUTOR_CONTACT | EXECUTOR_FOLLOWERS };
 
-const tled_executor CPU_EXECUTOR = {
-    .is = {.device = "cpu", .features = CPU_FEATURES, .forms = (1U << FORM_STEPPED) - 1, .unusable = cpu_unusable},
-    .create = boxes_create,
-    CPU_FUNCTIONS};
+const tled_executor CPU_EXECUTOR = {.is = {.device = "cpu",
+                                           .features = CPU_FEATURES | EXECUTOR_CUTS,
+                                           .forms = (1U << FORM_STEPPED) - 1,
+                                           .unusable = cpu_unusable},
+                                    .create = boxes_create,
+                                    CPU_FUNCTIONS};
 
 const tled_executor CPU_EXECUTOR_OF_MESHES = {.is = {.device = "cpu",
                                                      .features = EXECUTOR_MESHES | CPU_FEATURES,

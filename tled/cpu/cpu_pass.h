@@ -50,9 +50,11 @@ typedef struct cpu_work {
     void *sum[3]; /* zeros, before and after */
     const void *mass_inverse;
     const uint8_t *flags;
-    const void *fibre[3];                                                 /* cells, or NULL */
-    const void *fraction;                                                 /* cells, or NULL */
-    const void *mixture;                                                  /* cells, or NULL: none is mixed */
+    const void *fibre[3]; /* cells, or NULL */
+    const void *fraction; /* cells, or NULL */
+    const void *cut;      /* runs that are cut x 6 moments x lanes; or NULL: none is */
+    const void *weight;   /* nodes: by which gravity goes, in parts of the mass; or NULL: all of it */
+    const void *mixture;  /* cells, or NULL: none is mixed */
     const void *law[FORM_NUMBERS + HOURGLASS_NUMBERS];                    /* cells: those that are mixed; or NULL */
     const void *mixfibre[3];                                              /* cells, or NULL */
     const void *family[FIBRE_FAMILIES][3], *mixfamily[FIBRE_FAMILIES][3]; /* cells, or NULL: of families */

@@ -139,6 +139,14 @@ static bool is_regular(const rows_run *run)
     return n[1] == n[0] + 1 && n[2] == n[3] + 1 && n[5] == n[4] + 1 && n[6] == n[7] + 1;
 }
 
+/* The last run has this element. */
+static void mark_cut(const builder *b, int64_t element)
+{
+    rows_run *run = &b->r->run[b->r->runs - 1];
+    if (run->cut < 0 && tled_cut(b->p, element))
+        run->cut = b->r->cuts++;
+}
+
 /* Adds an element to the slab's last run, or in a new one, unless a layer begins with it. */
 static int add_cell(builder *b, int64_t element, uint8_t mask, bool begins)
 {
@@ -148,6 +156,7 @@ static int add_cell(builder *b, int64_t element, uint8_t mask, bool begins)
     r->cell_element[r->cells++] = (int32_t)element;
     if (!begins && follows(b, &r->run[r->runs - 1], element, mask)) {
         r->run[r->runs - 1].count++;
+        mark_cut(b, element);
         return 0;
     }
     if (r->cells > INT32_MAX - ROWS_PAD ||
@@ -157,11 +166,13 @@ static int add_cell(builder *b, int64_t element, uint8_t mask, bool begins)
     *run = (rows_run){.cell = r->cells - 1,
                       .volume = b->p->element_volume[element],
                       .mix = tled_mix(b->p, element),
+                      .cut = -1,
                       .count = 1,
                       .mask = mask};
     for (int c = 0; c < 8; c++)
         run->node[c] = r->place[b->p->element_node[8 * element + c]];
     run->regular = is_regular(run);
+    mark_cut(b, element);
     return 0;
 }
 

@@ -3,6 +3,7 @@
 #include "base/mem.h"
 #include "mesh/fibre_sets.h"
 #include "physics/element.h"
+#include "physics/element_cut.h"
 #include "tled/problem/conforming_step.h"
 #include "tled/problem/followers.h"
 #include "tled/problem/muscle_fibre.h"
@@ -125,8 +126,14 @@ static element_field pull_of(const tled_problem *p, int64_t element, const doubl
     }
     const element_shape box = element_box(p->side[0], p->side[1], p->side[2]);
     const element_fibre other = muscle_fibre_of(p, p->mixfibre, element, mix, share * mixture, value);
-    return element_force_fibred(p->form, p->control.kind, u, box, law_at(p->form, &of, of.hourglass, share), own,
-                                element_fibre_which(own), other, element_fibre_which(other), sets.of, sets.count);
+    const element_law law = law_at(p->form, &of, of.hourglass, share);
+    const int which = element_fibre_which(own), which_other = element_fibre_which(other);
+    const float *cut = tled_cut(p, element);
+    if (cut)
+        return element_force_cut(p->form, p->control.kind, u, box, law, own, which, other, which_other, sets.of,
+                                 sets.count, element_cut_of(cut));
+    return element_force_fibred(p->form, p->control.kind, u, box, law, own, which, other, which_other, sets.of,
+                                sets.count);
 }
 
 /* ---- sums */

@@ -9,7 +9,7 @@
 #include "tled/problem/state.h"
 
 typedef struct deformed {
-    element_tensor h; /* grad u at the centre */
+    element_tensor h; /* grad u at the centre; of an element that is cut its mean over the part */
     tled_law law;     /* its coefficients with what hourglass energy adds to the tangent */
     double rest;      /* m3: volume at rest */
     double dilation;  /* J - 1 */

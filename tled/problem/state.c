@@ -7,6 +7,7 @@
 #include "physics/stability.h"
 #include "tled/problem/bodies.h"
 #include "tled/problem/conforming_step.h"
+#include "tled/problem/cut.h"
 #include "tled/problem/followers.h"
 #include "tled/problem/loads.h"
 #include "tled/problem/muscle_fibre.h"
@@ -67,6 +68,7 @@ void tled_problem_free(tled_problem *p)
     free(p->corner);
     free(p->corner_start);
     free(p->mass);
+    free(p->weight);
     free(p->hold);
     bodies_free(p->bodies);
     forget_loads(p);
@@ -383,7 +385,7 @@ static int make_corners(tled_problem *p, err *e)
         for (; at && (list[at - 1] == none || corner_rank(list[at - 1]) > corner_rank((int32_t)i)); at--)
             list[at] = list[at - 1];
         list[at] = (int32_t)i;
-        p->mass[n] += tled_law_of(p, i / 8).density * share * tled_fraction(p, i / 8);
+        p->mass[n] += tled_law_of(p, i / 8).density * share * cut_inertia(p, i / 8);
     }
     for (int64_t n = 0; n < p->nodes; n++)
         if (p->corner[n * 8] == none)
@@ -428,8 +430,9 @@ int tled_problem_make(tled_problem *p, const model *m, const script *s, hourglas
     if (!p->corner || !p->mass || !p->hold)
         return -1;
     if ((boxes && check_boxes(p, e)) || check_fractions(p, e) || check_mixes(p, e) || (boxes && join_own(p, m, e)) ||
-        make_laws(p, m, e) || make_fields(p, e) || (boxes ? make_corners(p, e) : conforming_corners(p, e)) ||
-        loads_make(p, m, e) || followers_make(p, m, e) || bodies_make(p, m, e))
+        cut_borrow(p, m, e) || make_laws(p, m, e) || make_fields(p, e) ||
+        (boxes ? make_corners(p, e) : conforming_corners(p, e)) || cut_weigh(p, e) || loads_make(p, m, e) ||
+        followers_make(p, m, e) || bodies_make(p, m, e))
         return -1;
     if (!boxes)
         conforming_join(p);
@@ -499,7 +502,7 @@ void tled_curves(const tled_problem *p, double time, double *value)
 void tled_external(const tled_problem *p, const double *value, const double *u, int64_t n, double *force)
 {
     for (int a = 0; a < 3; a++) {
-        force[a] = p->gravity < 0 ? 0 : p->mass[n] * value[3 * p->gravity + a];
+        force[a] = p->gravity < 0 ? 0 : tled_weight(p, n) * value[3 * p->gravity + a];
         for (int32_t i = p->force_start[n]; i < p->force_start[n + 1]; i++)
             force[a] += loads_entry(p, i, value, a, u[a]);
     }

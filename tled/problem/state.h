@@ -7,6 +7,7 @@
 #ifndef SINEW_STATE_H
 #define SINEW_STATE_H
 
+#include "mesh/cut_moments.h"
 #include "mesh/fibres.h"
 #include "physics/forms.h"
 #include "physics/hourglass_numbers.h"
@@ -53,6 +54,7 @@ typedef struct tled_problem {
     const int32_t *element_volume; /* elements */
     const float *fibre;            /* elements x 3, or NULL */
     const float *fraction; /* elements: the share that is tissue, by which mass and all forces go; NULL: all 1 */
+    cut_moments cut;       /* elements whose strain is its mean over that share (cut.h); of none: none is */
     const int32_t *mix;    /* elements: the second volume of those that are mixed, -1 in others; NULL: none is */
     const float *mixture;  /* elements: its share of the tissue, 0 to 1; where mix is not NULL */
     const float *mixfibre; /* elements x 3: its fibre; or NULL */
@@ -68,6 +70,7 @@ typedef struct tled_problem {
     int32_t *corner_start; /* nodes + 1; or NULL. Without a lattice: node n's are
                        * corner[corner_start[n]] and on, in the elements' order */
     double *mass;          /* nodes: kg */
+    double *weight;        /* nodes, kg: what gravity acts on, where elements are cut (cut.h); NULL: the mass */
     int32_t *hold;         /* nodes x 3: HOLD_*, or as moves.h says */
     int64_t held;          /* nodes with any component held */
     int32_t *force_start;  /* nodes + 1: entries of node n are force_start[n] to force_start[n + 1] - 1 */
@@ -131,6 +134,18 @@ int tled_problem_start(tled_problem *p, const frame *f, notes *warnings, err *e)
 static inline double tled_fraction(const tled_problem *p, int64_t element)
 {
     return p->fraction ? (double)p->fraction[element] : 1;
+}
+
+/* The moments of an element that is cut (cut.h), or NULL. */
+static inline const float *tled_cut(const tled_problem *p, int64_t element)
+{
+    return p->cut.count ? cut_moments_at(&p->cut, element) : NULL;
+}
+
+/* What gravity acts on, kg. */
+static inline double tled_weight(const tled_problem *p, int64_t node)
+{
+    return p->weight ? p->weight[node] : p->mass[node];
 }
 
 /* The second volume of an element, or -1. */

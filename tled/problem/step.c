@@ -1,6 +1,7 @@
 #include "tled/problem/step.h"
 
 #include "tled/problem/conforming_step.h"
+#include "tled/problem/cut.h"
 #include "tled/problem/muscle_fibre.h"
 
 #include <math.h>
@@ -94,6 +95,34 @@ static double fibred_square_at_rest(const tled_problem *p, int64_t element, cons
     return step_below(&a, highest) ? highest : step_largest(&a);
 }
 
+/* Likewise of one that is cut; muscles add no more than what they do to a whole one, raised as the law is. */
+static double cut_square_at_rest(const tled_problem *p, int64_t element, const float *moments, step_fibres *fibres,
+                                 double highest)
+{
+    const element_tensor rest = {0};
+    const tled_law law = tled_law_of(p, element);
+    const stability_twists whole = {law.twists, 0}, t = cut_twists(p, element, moments, whole);
+    const double muscles = p->curved ? cut_raises(p, element, moments) * square_of_muscles(p, element) : 0;
+    step_matrix a;
+    fibres->own = fibres->other = (element_fibre){.tension = 0};
+    step_matrix_of(p, &law, rest, fibres, &a);
+    cut_matrix(p, element, moments, &a);
+    if (step_below(&a, stability_room(t, highest - muscles)))
+        return highest;
+    return stability_square(t, step_largest(&a)) + muscles;
+}
+
+/* The larger of `highest` and the square of an element. */
+static double higher(const tled_problem *p, int64_t element, double highest)
+{
+    const float *moments = tled_cut(p, element);
+    step_fibres fibres = step_fibres_of(p, element, NULL);
+    if (moments)
+        return fmax(highest, cut_square_at_rest(p, element, moments, &fibres, highest));
+    return fmax(highest,
+                fibres.sets.count ? fibred_square_at_rest(p, element, &fibres, highest) : square_at_rest(p, element));
+}
+
 double step_at_rest(const tled_problem *p, int32_t *volume)
 {
     double highest = 0;
@@ -103,11 +132,10 @@ double step_at_rest(const tled_problem *p, int32_t *volume)
         return 2 / sqrt(p->conforming->square);
     }
     for (int64_t i = 0; i < p->elements; i++) {
-        const step_fibres fibres = step_fibres_of(p, i, NULL);
-        const double square = fibres.sets.count ? fibred_square_at_rest(p, i, &fibres, highest) : square_at_rest(p, i);
+        const double square = higher(p, i, highest);
         if (square > highest && volume)
             *volume = p->element_volume[i];
-        highest = fmax(highest, square);
+        highest = square;
     }
     return 2 / sqrt(highest);
 }

@@ -8,6 +8,8 @@
  * largest eigenvalue of a cube is 12 K / (rho h^2), so dt = h / sqrt(3 K / rho). Deformed, A has the geometric
  * stiffness and the active stress in it.
  *
+ * Of an element that a surface cuts, cut.h changes the matrix, and hourglass modes are counted with the law.
+ *
  * Of an element mixed of two volumes what is found at rest is a bound from theirs, exact where both have the same nu;
  * where fibres resist being stretched it is exact of each element, with the fibres as they are when they are pulled.
  */

@@ -127,7 +127,7 @@ static node_load load_of(const tled_problem *p, const moment *m, int64_t n)
     node_load load = {{0}, {0}};
     tled_external(p, m->curves, m->displacement + 3 * n, n, load.forces);
     for (int a = 0; a < 3 && p->gravity >= 0; a++) {
-        load.gravity[a] = p->mass[n] * m->curves[3 * p->gravity + a];
+        load.gravity[a] = tled_weight(p, n) * m->curves[3 * p->gravity + a];
         load.forces[a] -= load.gravity[a];
     }
     return load;

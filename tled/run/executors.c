@@ -48,10 +48,10 @@ executor_need tled_need(const tled_problem *p)
     const uint32_t meshes = p->conforming ? EXECUTOR_MESHES : 0, contact = p->collider ? EXECUTOR_CONTACT : 0,
                    followers = p->followers ? EXECUTOR_FOLLOWERS : 0, mixtures = p->mix ? EXECUTOR_MIXTURES : 0,
                    curves = p->curved ? EXECUTOR_CURVES : 0, fibres = p->fibres.of ? EXECUTOR_FIBRES : 0,
-                   series = p->serial ? EXECUTOR_SERIES : 0;
+                   series = p->serial ? EXECUTOR_SERIES : 0, cuts = p->cut.count ? EXECUTOR_CUTS : 0;
     const tled_volume *wants = volume_that_wants(p);
-    executor_need need = {.features =
-                              meshes | contact | followers | mixtures | curves | fibres | series | features_of(p->form),
+    executor_need need = {.features = meshes | contact | followers | mixtures | curves | fibres | series | cuts |
+                                      features_of(p->form),
                           .form = UINT32_C(1) << p->form,
                           .volume = wants ? wants->name : NULL};
     for (int f = 0; f < FORM_COUNT; f++) {

@@ -5,6 +5,7 @@
 #include "base/mem.h"
 #include "mesh/element_place.h"
 #include "tled/problem/conforming_step.h"
+#include "tled/problem/cut.h"
 #include "tled/problem/deformed.h"
 #include "tled/problem/loads.h"
 #include "tled/problem/muscle_fibre.h"
@@ -38,6 +39,18 @@ static void add_conforming(const monitor *w, int64_t i, const deformed *d, struc
         take_frequency(part, i, w->raise * conforming_square(p, i, t, step_largest(&a)));
 }
 
+/* Of an element that is cut; t: as of a whole one. */
+static void add_cut(const monitor *w, int64_t i, const deformed *d, const float *moments, const step_fibres *fibres,
+                    stability_twists t, struct monitor_part *part)
+{
+    step_matrix a;
+    t = cut_twists(w->p, i, moments, t);
+    step_matrix_of(w->p, &d->law, d->h, fibres, &a);
+    cut_matrix(w->p, i, moments, &a);
+    if (!step_below(&a, stability_room(t, part->sum.frequency)))
+        take_frequency(part, i, w->raise * stability_square(t, step_largest(&a)));
+}
+
 /* Bounds tell enough of most elements: that they do not reach past the largest frequency of their chunk, or how far.
  * Where they are too wide, or leave open whether any reaches past the one at rest, the matrix tells, and the frequency
  * is raised to 1 % above the element's: so few need more than one test. */
@@ -48,6 +61,11 @@ static void add_step(const monitor *w, int64_t i, const deformed *d, element_sha
     const stability_twists t =
         stability_twists_of(p->control.kind, d->law.twists, slope, d->h, &d->modes, d->stiffening);
     const step_fibres fibres = step_fibres_of(p, i, w->curves);
+    const float *cut = tled_cut(p, i);
+    if (cut) {
+        add_cut(w, i, d, cut, &fibres, t, part);
+        return;
+    }
     const stability_range range = stability_range_with(step_range_of(p, &d->law, d->h, &fibres), t);
     step_matrix a;
     if (range.high <= part->sum.frequency)

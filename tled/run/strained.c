@@ -37,17 +37,18 @@ static bool is_above(const strained_view *v, const deformed *d, double limit)
     return gap > 0 && 16 * away <= 1 && away * most * most < 3 * gap * gap;
 }
 
-/* The corners of elements that are no boxes are always computed. */
+/* The corners of elements that are no boxes, or cut, are always computed. */
 static void add_quality(quality *to, const strained_view *v, int64_t element, const deformed *d)
 {
     const double limit = to->corner < v->limit ? to->corner : v->limit, centre = 1 + d->dilation;
-    if (!v->p->conforming && is_above(v, d, limit > 0 ? limit : 0)) {
+    const bool knows = !v->p->conforming && !tled_cut(v->p, element); /* that F in the middle */
+    if (knows && is_above(v, d, limit > 0 ? limit : 0)) {
         if (!(centre >= to->centre))
             to->centre = centre;
         return;
     }
     quality_j j = quality_of(&v->mesh, element, v->displacement);
-    if (!v->p->conforming)
+    if (knows)
         j.centre = centre; /* the same bits, whether corners are computed or not */
     quality_add(to, element, j);
 }

@@ -1,5 +1,6 @@
 #include "tled/run/tled_words.h"
 
+#include "tled/problem/cut.h"
 #include "tled/run/timeline.h"
 #include "tled/run/tled_live.h"
 
@@ -16,6 +17,10 @@ void words_start(const session *s, const char *device, const struct options *o)
         snprintf(sides, sizeof sides, "any shape, %.4g mm in the mean", 1e3 * p->side[0]);
     tool_say(s->t, "%lld elements of %s, %lld nodes, %lld held; %s, %s precision", (long long)p->elements, sides,
              (long long)p->nodes, (long long)p->held, device, o->precision ? "single" : "double");
+    const int64_t least = cut_least(p);
+    if (least)
+        tool_say(s->t, "%lld cut element%s of less than %g of a voxel move%s with the mass of so much",
+                 (long long)least, least == 1 ? "" : "s", CUT_LEAST, least == 1 ? "s" : "");
     tool_say(s->t, "stable step %.6g ms, dt %.6g ms, damping %.4g 1/s%s", 1e3 * s->stable,
              1e3 / r->rate / (double)live_parts(s->live), r->damping, r->adapt ? ", then adapted" : "");
     if (!r->point && p->start > 0 && p->start >= o->ramp && (o->contract.count || o->gravity.count))

@@ -1,0 +1,21 @@
+/* The moments of elements that a surface cuts, in a model: cut.element and cut.moments, of the elements whose strain is
+ * its mean over what is enclosed of them (element_cut.h); other elements have theirs at the centre. Borrows the model.
+ */
+#ifndef SINEW_CUT_MOMENTS_H
+#define SINEW_CUT_MOMENTS_H
+
+#include "model/model.h"
+
+typedef struct cut_moments {
+    const int32_t *element; /* ascending */
+    const float *of;        /* count x CUT_MOMENTS: x, y, z, xy, yz, zx, xyz */
+    int64_t count;          /* 0: no element has any */
+} cut_moments;
+
+/* -1 with e filled where a model has some that cannot be. */
+int cut_moments_of(cut_moments *to, const model *m, err *e);
+
+/* Those of an element, or NULL. */
+const float *cut_moments_at(const cut_moments *of, int64_t element);
+
+#endif

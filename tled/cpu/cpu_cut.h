@@ -1,0 +1,40 @@
+/* What the CPU executor for boxes has of elements that are cut (tled/problem/cut.h): the moments of runs with any, and
+ * the weight of nodes in parts of their mass; part of cpu_loops.h.
+ */
+enum { CUT_USED = 6 }; /* moments that forces take */
+
+static int cut_allocate(cpu_state *s, err *e)
+{
+    if (!s->p->cut.count)
+        return 0;
+    return make_numbers(&s->cut, s->rows.cuts, CUT_USED * s->pass->lanes, e) ||
+                   make_numbers(&s->weight, s->rows.nodes, 1, e)
+               ? -1
+               : 0;
+}
+
+static int64_t cut_bytes(const cpu_state *s)
+{
+    const int64_t numbers = (int64_t)s->rows.cuts * CUT_USED * s->pass->lanes + s->rows.nodes;
+    return s->cut ? numbers * (int64_t)sizeof(number) : 0;
+}
+
+static void cut_fill_run(const cpu_state *s, const rows_run *run)
+{
+    const int lanes = s->pass->lanes;
+    number *to = s->cut + (int64_t)run->cut * CUT_USED * lanes;
+    for (int i = 0; i < run->count; i++) {
+        const float *moments = tled_cut(s->p, s->rows.cell_element[run->cell + i]);
+        for (int k = 0; moments && k < CUT_USED; k++)
+            to[k * lanes + i] = (number)moments[k];
+    }
+}
+
+static void cut_fill(const cpu_state *s)
+{
+    for (const rows_run *run = s->rows.run; s->cut && run < s->rows.run + s->rows.runs; run++)
+        if (run->cut >= 0)
+            cut_fill_run(s, run);
+    for (int64_t n = 0; s->weight && n < s->p->nodes; n++)
+        s->weight[s->rows.place[n]] = (number)(s->p->weight[n] / s->p->mass[n]);
+}

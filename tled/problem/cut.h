@@ -1,0 +1,34 @@
+/* Elements that a surface cuts, of a model that has their moments (mesh/cut_moments.h): their forces are by the mean
+ * strain of what is enclosed (physics/element_cut.h) and by its share; so is the body force, by exact weights, the means
+ * of the corners' shape functions over it,
+ *     N_a = (1 + x_a x + ... + x_a y_a xy + ... + x_a y_a z_a xyz)/8,
+ * x_a, y_a and z_a the signs of corner a. Each corner has an eighth of the mass, by the share: mass by these weights would
+ * leave some nodes with next to none, and no step would be stable. What fills less than CUT_LEAST of its box has
+ * the mass of so much, as a probe and pressures push nodes. Owns nothing but what the problem does.
+ */
+#ifndef SINEW_CUT_H
+#define SINEW_CUT_H
+
+#include "physics/stability_cut.h"
+#include "tled/problem/state.h"
+
+#define CUT_LEAST .02
+
+/* By what part of a whole box's mass an element moves: its share; if it is cut, at least CUT_LEAST. */
+double cut_inertia(const tled_problem *p, int64_t element);
+
+/* Makes p->cut and, where any element is cut, p->weight; the latter needs the laws. -1 with e filled. */
+int cut_borrow(tled_problem *p, const model *m, err *e);
+int cut_weigh(tled_problem *p, err *e);
+
+/* How many have more mass than their share. */
+int64_t cut_least(const tled_problem *p);
+
+/* From what is known of the whole box: its matrix, and what hourglass modes add. moments: of the element. */
+void cut_matrix(const tled_problem *p, int64_t element, const float *moments, step_matrix *a);
+stability_twists cut_twists(const tled_problem *p, int64_t element, const float *moments, stability_twists whole);
+
+/* No less than the largest factor by which the part's strain raises the square of a frequency. */
+double cut_raises(const tled_problem *p, int64_t element, const float *moments);
+
+#endif
