@@ -46,63 +46,116 @@ is "$(rows cut.moments | awk '{ printf "%.6g\n", $2 }' | sort -n | uniq -c | tr 
 fails 2 "--strain without --fraction" "--strain is for --fraction" voxelise --unit mm -s 1 --strain enclosed "$T/box.obj"
 fails 2 "--strain of another kind" "--strain 'middle'" voxelise --unit mm -s 1 --fraction 2 --strain middle "$T/box.obj"
 
-# ---- a quarter of a tube, inner radius 11.3 mm, outer 20 mm, plane strain, E 3000 Pa, nu .3, under pressure (Lame)
+# ---- under pressure (Lame): a quarter of a tube in plane strain and an eighth of a hollow sphere, of radii 11.3 and 20 mm, E 3 kPa
 
-awk -v h=1.25 'BEGIN {
-    pi = atan2(0, -1); m = 128
-    for (k = 0; k < 2; k++)
-        for (j = 0; j < 2; j++)
-            for (i = 0; i <= m; i++) {
-                r = j ? 20 : 11.3; x = r * cos(pi / 2 * i / m); y = r * sin(pi / 2 * i / m)
-                printf "v %.12g %.12g %.12g\n", i == m ? 0 : x, i ? y : 0, k * h
-            }
-    print "g skin_in"
-    for (i = 1; i <= m; i++) { a = i; c = i + 2 * (m + 1); print "f", a, c, c + 1, a + 1 }
-    print "g skin_out"
-    for (i = 1; i <= m; i++) {
-        a = i + m + 1; c = i + 3 * (m + 1); print "f", a, a + 1, c + 1, c
-        print "f", i, i + 1, i + 1 + m + 1, i + m + 1
-        print "f", i + 2 * (m + 1), i + 3 * (m + 1), i + 1 + 3 * (m + 1), i + 1 + 2 * (m + 1)
-    }
-    print "f", 1, m + 2, 3 * m + 4, 2 * m + 3
-    print "f", m + 1, 3 * m + 3, 4 * m + 4, 2 * m + 2
-}' >"$T/tube.obj"
-echo "skin surfaces=skin_in,skin_out" >"$T/volumes"
-echo "tissue E=3000 nu=0.3 density=1000" >"$T/materials"
-# within X0 X1 Y0 Y1 Z0 Z1: a box about a plane.
-within() {
-    printf '%smm,%smm,%smm,%smm,%smm,%smm' "$1" "$3" "$5" "$2" "$4" "$6"
+# tube H: a voxel thick.
+# shellcheck disable=SC2317 # called by name
+tube() {
+    awk -v h="$1" 'BEGIN {
+        pi = atan2(0, -1); m = 512
+        for (k = 0; k < 2; k++)
+            for (j = 0; j < 2; j++)
+                for (i = 0; i <= m; i++) {
+                    r = j ? 20 : 11.3; x = r * cos(pi / 2 * i / m); y = r * sin(pi / 2 * i / m)
+                    printf "v %.12g %.12g %.12g\n", i == m ? 0 : x, i ? y : 0, k * h
+                }
+        print "g skin_in"
+        for (i = 1; i <= m; i++) { a = i; c = i + 2 * (m + 1); print "f", a, c, c + 1, a + 1 }
+        print "g skin_out"
+        for (i = 1; i <= m; i++) {
+            a = i + m + 1; c = i + 3 * (m + 1); print "f", a, a + 1, c + 1, c
+            print "f", i, i + 1, i + 1 + m + 1, i + m + 1
+            print "f", i + 2 * (m + 1), i + 3 * (m + 1), i + 1 + 3 * (m + 1), i + 1 + 2 * (m + 1)
+        }
+        print "f", 1, m + 2, 3 * m + 4, 2 * m + 3
+        print "f", m + 1, 3 * m + 3, 4 * m + 4, 2 * m + 2
+    }'
 }
-{
-    echo "0 pressure tube:skin_in 3e-4"
-    echo "0 displace $(within -1e-3 1e-3 -1 21 -1 2) 0,-,-"
-    echo "0 displace $(within -1 21 -1e-3 1e-3 -1 2) -,0,-"
-    echo "0 displace $(within -1 21 -1 21 -1 2) -,-,0"
-} >"$T/script"
-# error RULE: of the displacement of nodes in the tube at rest, in parts of it.
+# ball H: of triangles with sides of a voxel or less.
+# shellcheck disable=SC2317 # called by name
+ball() {
+    awk -v h="$1" '
+        function at(r, i, j, k) {
+            if (!((r, i, j) in number)) {
+                l = sqrt(i * i + j * j + k * k)
+                printf "v %.12g %.12g %.12g\n", r * i / l, r * j / l, r * k / l
+                number[r, i, j] = ++count
+            }
+            return number[r, i, j]
+        }
+        function face(a, b, c, out) { list[++faces] = out ? a " " b " " c : c " " b " " a }
+        function shell(r, out) {
+            for (i = 0; i < m; i++)
+                for (j = 0; i + j < m; j++) {
+                    k = m - i - j
+                    face(at(r, i + 1, j, k - 1), at(r, i, j + 1, k - 1), at(r, i, j, k), out)
+                    if (k > 1)
+                        face(at(r, i + 1, j, k - 1), at(r, i + 1, j + 1, k - 2), at(r, i, j + 1, k - 1), out)
+                }
+        }
+        function side(a, b, c, d) { list[++faces] = a " " b " " c " " d }
+        BEGIN {
+            m = int(40 / h); if (m < 24) m = 24
+            shell(11.3, 0); inner = faces; shell(20, 1)
+            for (i = 0; i < m; i++) {
+                side(at(11.3, 0, m - i, i), at(11.3, 0, m - i - 1, i + 1), at(20, 0, m - i - 1, i + 1), at(20, 0, m - i, i))
+                side(at(11.3, i, 0, m - i), at(11.3, i + 1, 0, m - i - 1), at(20, i + 1, 0, m - i - 1), at(20, i, 0, m - i))
+                side(at(11.3, m - i, i, 0), at(11.3, m - i - 1, i + 1, 0), at(20, m - i - 1, i + 1, 0), at(20, m - i, i, 0))
+            }
+            print "g skin_in"
+            for (i = 1; i <= faces; i++) { if (i == inner + 1) print "g skin_out"; print "f", list[i] }
+        }'
+}
+# within X1 Y1 Z1 [Z0]: a box of a plane.
+within() {
+    printf -- '-1e-3mm,-1e-3mm,%smm,%smm,%smm,%smm' "${4--1e-3}" "$1" "$2" "$3"
+}
+# error SHAPE H RULE: of the displacement of nodes in the tissue at rest, in parts of it. Leaves $T/log.
 error() {
-    voxelise -q --text --unit mm -s 1.25 --origin 0,0,0 --fraction 8 --strain "$1" --volumes "$T/volumes" --materials "$T/materials" \
-        "$T/tube.obj" 2>"$T/said" | sinew bind -q >"$T/$1.model" 2>>"$T/said"
-    tled-run --text --rest 1e-6 --script "$T/script" -o "$T/$1.out" <"$T/$1.model" 2>"$T/$1.log" || diag_file "$T/$1.log"
-    awk '$1 == "array" { on = $2; n = 0; next } /^[a-z]/ { on = "" }
-        on == "node.position" { x[n] = $1; y[n++] = $2 }
+    "$1" "$2" >"$T/$1.obj"
+    {
+        echo "0 pressure $1:skin_in 3e-4"
+        echo "0 displace $(within 1e-3 21 21) 0,-,-"
+        echo "0 displace $(within 21 1e-3 21) -,0,-"
+        echo "0 displace $(within 21 21 1e-3) -,-,0"
+        [ "$1" = ball ] || echo "0 displace $(within 21 21 "$(plus "$2" 1e-3)" "$(plus "$2" -1e-3)") -,-,0"
+    } >"$T/script"
+    voxelise -q --text --unit mm -s "$2" --origin 0,0,0 --fraction 8 --strain "$3" --volumes "$T/volumes" --materials "$T/materials" \
+        "$T/$1.obj" 2>"$T/said" | sinew bind -q >"$T/model" 2>>"$T/said"
+    tled-run --text --rest 1e-6 --script "$T/script" -o "$T/out" <"$T/model" 2>"$T/log" || diag_file "$T/log"
+    awk -v shape="$1" '$1 == "array" { on = $2; n = 0; next } /^[a-z]/ { on = "" }
+        on == "node.position" { x[n] = $1; y[n] = $2; z[n++] = $3 }
         on == "node.displacement" {
-            r = sqrt(x[n] ^ 2 + y[n] ^ 2)
+            d = shape == "tube" ? 2 : 3; w = d == 2 ? 0 : z[n]; r = sqrt(x[n] ^ 2 + y[n] ^ 2 + w ^ 2)
             if (r > .0113 && r < .02) {
-                mu = 3000 / 2.6; c = 3e-4 * .0113 ^ 2 / (.02 ^ 2 - .0113 ^ 2)
-                u = c * r / (2 * mu / .4) + c * .02 ^ 2 / (2 * mu * r)
-                off += ($1 - u * x[n] / r) ^ 2 + ($2 - u * y[n] / r) ^ 2; all += u ^ 2
+                mu = 3000 / 2.9; K = 10000; c = 3e-4 * .0113 ^ d / (.02 ^ d - .0113 ^ d)
+                u = d == 2 ? c * r / (2 * (K + mu / 3)) + c * .02 ^ 2 / (2 * mu * r) : c * r / (3 * K) + c * .02 ^ 3 / (4 * mu * r ^ 2)
+                off += ($1 - u * x[n] / r) ^ 2 + ($2 - u * y[n] / r) ^ 2 + ($3 - u * w / r) ^ 2; all += u ^ 2
             }
             n++
         }
-        END { printf "%.9g", all ? sqrt(off / all) : 1 }' "$T/$1.out"
+        END { printf "%.9g", all ? sqrt(off / all) : 1 }' "$T/out"
 }
-by_mean=$(error enclosed)
-by_share=$(error centre)
-echo "# a tube of 16 voxels: out by $by_mean by the mean, $by_share by shares"
-check "a tube under pressure, by the mean strain" awk -v e="$by_mean" 'BEGIN { exit !(e < 3e-3) }'
-check "less than half of what it is by shares" awk -v e="$by_mean" -v s="$by_share" 'BEGIN { exit !(2 * e < s) }'
-check "its stable step is .65 of that of whole voxels" grep -q "stable step 0.29" "$T/enclosed.log"
+plus() {
+    awk -v a="$1" -v b="$2" 'BEGIN { printf "%.9g", a + b }'
+}
+# below A B FACTOR NAME: A times the factor is at most B.
+below() {
+    check "$4 ($1, $2)" awk -v a="$1" -v b="$2" -v f="$3" 'BEGIN { exit !(a * f <= b) }'
+}
+echo "skin surfaces=skin_in,skin_out" >"$T/volumes"
+echo "tissue E=3000 nu=0.45 density=1000" >"$T/materials"
+by_mean=$(error tube 1.25 enclosed)
+below "$by_mean" .0025 1 "a tube of 16 voxels, by the mean strain"
+check "its stable step is .688 of that of whole voxels" grep -q "stable step 0.157" "$T/log"
+below "$by_mean" "$(error tube 1.25 centre)" 1.9 "out by half of what it is by shares"
+if [ -n "$SINEW_LONG" ]; then
+    # Order 1.9: over three halvings of the voxels the error falls to 1/52 and less, over two to 1/13.9.
+    below "$(error tube .3125 enclosed)" "$(error tube 2.5 enclosed)" 51.9 "a tube of 8 to 64 voxels: order 1.9"
+    below "$(error ball .625 enclosed)" "$(error ball 2.5 enclosed)" 13.9 "a hollow sphere of 8 to 32 voxels: order 1.9"
+else
+    skip 2 "SINEW_LONG is not set"
+fi
 fails 1 "cut elements that are not in order" "cut.element, row 1 is 0 after 0" sh -c "sed '/^array cut.element/,/^[a-z]/s/^1\$/0/; /^crc/d' '$T/one' | tled-run"
 # What else reads such models.
 is "$(tled-run -q --text -n 3 -g 0,0,-9.81 <"$T/one" 2>"$T/said" | sinew results stress | sinew info --get frames)" 1 "results of frames"

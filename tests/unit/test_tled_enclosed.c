@@ -333,6 +333,30 @@ static void test_refused(void)
     end(&s);
 }
 
+static const char *usable(void)
+{
+    return NULL;
+}
+
+/* A card that has all but these elements: it is refused by name, and left out where the choice is free. */
+static void test_choice(void)
+{
+    static const executor card = {"cuda", ~(uint32_t)EXECUTOR_CUTS, ~(uint32_t)0, usable};
+    const executor *const table[] = {&card, &tled_cpu_double.is, NULL};
+    char says[300];
+    setting s;
+    err e = {0};
+    make(&s, &soft, true, PHYSICAL);
+    const executor_need need = tled_need(&s.p);
+    ok(!executor_choose(table, "cuda", &need, says, sizeof says, &e) &&
+           !strcmp(e.text, "the CUDA back end has no mean strain of cut elements; expected -d cpu or auto"),
+       "%s", e.text);
+    ok(executor_choose(table, "auto", &need, says, sizeof says, &e) == &tled_cpu_double.is &&
+           !strcmp(says, "cpu (the one with mean strain of cut elements)"),
+       "%s", says);
+    end(&s);
+}
+
 int main(void)
 {
     static const block_fibres hgo = {.name = "hgo",
@@ -352,5 +376,6 @@ int main(void)
     test_weight();
     test_step();
     test_refused();
+    test_choice();
     return done_testing();
 }

@@ -361,9 +361,24 @@ static __attribute__((noinline)) void fibred_forces(const cpu_work *w, const row
         any_forces_of(w, run, shape, HOURGLASS_ISOTROPIC, false);
 }
 
+/* Cut elements of a volume that has a law alone. */
+static inline void plain_cut_forces(const cpu_work *w, const rows_run *run, element_shape shape)
+{
+    const real share = load(w->fraction, run->cell);
+    const element_fibre none = {.tension = REAL_ZERO};
+    const element_field f = element_force_cut(THE_FORM, w->p->control.kind, moved_by(w, run), shape,
+                                              law_of_kind(kind_of(w, run->volume), share), none, ELEMENT_NO_MUSCLE,
+                                              none, ELEMENT_NO_MUSCLE, 0, 0, cut_of(w, run));
+    add_field(w, run, &f);
+}
+
 static __attribute__((noinline)) void cut_forces(const cpu_work *w, const rows_run *run, element_shape shape)
 {
-    any_forces_of(w, run, shape, w->p->control.kind, true);
+    const bool fibred = w->p->fibres.of && fibres_any(&w->p->fibres, run->volume);
+    if (fibred || run->mix >= 0 || muscle_of(w, w->fibre, run->volume) != ELEMENT_NO_MUSCLE)
+        any_forces_of(w, run, shape, w->p->control.kind, true);
+    else
+        plain_cut_forces(w, run, shape);
 }
 
 /* One component of a node that the script displaces or pushes. */
