@@ -158,6 +158,11 @@ else
 fi
 fails 1 "cut elements that are not in order" "cut.element, row 1 is 0 after 0" sh -c "sed '/^array cut.element/,/^[a-z]/s/^1\$/0/; /^crc/d' '$T/one' | tled-run"
 # What else reads such models.
+printf '0 displace -1cm,-1cm,-11mm,1cm,1cm,-8mm 0,0,0\n0 gravity 0,0,-9.81\n' >"$T/script"
+tled-run -q --script "$T/script" -t .01 --log-every 1e-4 --log "$T/log" <"$T/one" >"$T/out" 2>"$T/said" || diag_file "$T/said"
+near "$(sinew info --get quality.hourglass "$T/out")" "$(awk -F '\t' 'END { printf "%.9g", $7 / $6 }' "$T/log")" 1e-6 \
+    "sinew info has the energies of the log"
+near "$(awk -F '\t' 'END { printf "%.9g", 1 + $14 / $8 }' "$T/log")" 1 1e-3 "and energies balance"
 is "$(tled-run -q --text -n 3 -g 0,0,-9.81 <"$T/one" 2>"$T/said" | sinew results stress | sinew info --get frames)" 1 "results of frames"
 is "$(msds-mesh --tets <"$T/one" 2>/dev/null | sinew info | grep -c 'cut\.')" 0 "tetrahedra have none"
 done_testing

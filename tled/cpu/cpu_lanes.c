@@ -318,8 +318,8 @@ static inline void contract_both(const cpu_work *w, const rows_run *run, const e
                                  bool is_cut, element_fibre *fibre, element_fibre *second)
 {
     const element_modes x = element_modes_of(u->x), y = element_modes_of(u->y), z = element_modes_of(u->z);
-    const element_tensor h = is_cut ? element_cut_gradient(x, y, z, shape.slope, cut_of(w, run))
-                                    : element_gradient(x, y, z, shape.slope);
+    const element_tensor h =
+        is_cut ? element_cut_gradient(x, y, z, shape.slope, cut_of(w, run)) : element_gradient(x, y, z, shape.slope);
     if (is_serial(w, run->volume) && w->fibre[0])
         contract(w, run, run->volume, h, w->contractile, fibre);
     if (is_serial(w, run->mix) && w->mixfibre[0])
