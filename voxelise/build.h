@@ -12,7 +12,8 @@
 #include "voxelise/voxels.h"
 
 /* Adds axes node and element, node.position, node.lattice, element.node, element.lattice and element.volume; by shares
- * element.fraction too, cut.element and cut.moments where x has any, and element.mix and element.mixture where some element has a second volume, and
+ * element.fraction too, cut.element and cut.moments where x has any, and element.mix and element.mixture where some
+ * element has a second volume, and
  * element.inside where slits are open. */
 int build_elements(model *m, const voxels *x, const slits *s, const lattice *l, pool *threads, err *e);
 

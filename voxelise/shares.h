@@ -17,8 +17,8 @@
 /* ---- moments
  *
  * Of voxels that are enclosed in part: the means of xi, eta, zeta, xi eta, eta zeta, zeta xi and xi eta zeta, each from
- * -1 to 1 across the voxel, over the samples that are inside. In units of half a sample's width all places are odd whole
- * numbers, so sums are exact, in any order.
+ * -1 to 1 across the voxel, over the samples that are inside. In units of half a sample's width all places are odd
+ * whole numbers, so sums are exact, in any order.
  */
 
 enum { MOMENTS = 7 };

@@ -4,9 +4,9 @@
  * -1 to 1 the slope along x is, at a point,
  *     du/dx = (m_x + eta m_xy + zeta m_zx + eta zeta m_xyz)/(4 h_x),
  * and its mean over the part has the part's means of eta, zeta and eta zeta in it; along y and z likewise. These six
- * means, the part's moments, and the share of the box that it fills are all that the mean gradient takes. Forces are the
- * transpose: with V the part's volume, mode xy gets V (P_.x y/(4 h_x) + P_.y x/(4 h_y)), and so on. So where P is the
- * same everywhere, the nodes' forces are those of tractions P n on the part's surface, however it lies in the box
+ * means, the part's moments, and the share of the box that it fills are all that the mean gradient takes. Forces are
+ * the transpose: with V the part's volume, mode xy gets V (P_.x y/(4 h_x) + P_.y x/(4 h_y)), and so on. So where P is
+ * the same everywhere, the nodes' forces are those of tractions P n on the part's surface, however it lies in the box
  * (a patch test that a share alone fails), and all that is of H and P, fibres and muscles too, holds as it stands.
  *
  * Hourglass modes are held as those of a whole box, times the share: an affine displacement has none. */

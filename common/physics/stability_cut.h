@@ -1,9 +1,10 @@
-/* The stable step of a box of which only a part is tissue (element_cut.h). Its mean gradient is H_kj = (m_kj + E_j.q_k)
- * /(4 h_j), of the slopes m and hourglass modes q of component k, with moments of the part in E_j; so in the modes, all of
- * the same mass, B B^T is that of the whole box times
+/* The stable step of a box of which only a part is tissue (element_cut.h). Its mean gradient is
+ *     H_kj = (m_kj + E_j.q_k)/(4 h_j),
+ * of the slopes m and hourglass modes q of component k, with moments of the part in E_j; so in the modes, all of the
+ * same mass, B B^T is that of the whole box times
  *     G = I + E E^T,   3 x 3,
- * and with G = L L^T the law's frequencies are those of L^T A L, A the matrix of the whole box (step.h). Forces go by the
- * part's share and mass by its inertia, which is no less: `by` is the one over the other. What hourglass modes add
+ * and with G = L L^T the law's frequencies are those of L^T A L, A the matrix of the whole box (step.h). Forces go by
+ * the part's share and mass by its inertia, which is no less: `by` is the one over the other. What hourglass modes add
  * (stability.h) is no longer apart from the law's, as both move these modes: the largest eigenvalue of the sum is at
  * most the sum of the largest, and |dF|^2 at most |G| times what it is of the slopes alone. In double. Owns nothing. */
 #ifndef SINEW_STABILITY_CUT_H

@@ -28,7 +28,8 @@ static inline part part_box(void)
         const double side = f % 2 ? 1 : -1;
         p.face[f].corners = 4;
         for (int i = 0; i < 4; i++) {
-            const double u = i == 0 || i == 3 ? -1 : 1, v = i < 2 ? -1 : 1;
+            const double u = i == 0 || i == 3 ? -1 : 1;
+            const double v = i < 2 ? -1 : 1;
             p.face[f].at[i][a] = side;
             p.face[f].at[i][b] = f % 2 ? u : v;
             p.face[f].at[i][c] = f % 2 ? v : u;

@@ -44,7 +44,8 @@ static double miss(muscle_series s, double strain, double tension, double most)
     if (x <= -1 + room / most && strain - now <= room) /* as fast as it can, and slack still */
         return 0;
     /* Times the denominator of v, as where a muscle yields x has no bound. */
-    const double by = x < 0 ? 1 - 4 * x : .4 + 10 * x, wants = tension * (x < 0 ? 1 + x : .4 + 14 * x);
+    const double by = x < 0 ? 1 - 4 * x : .4 + 10 * x;
+    const double wants = tension * (x < 0 ? 1 + x : .4 + 14 * x);
     const double rounded = room * (k + 20 * tension / most / by);
     return fmax(fmax(fabs(pull - wants / by), pull - 1.4 * tension) - rounded, 0) / scale;
 }

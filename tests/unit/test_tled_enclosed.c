@@ -1,7 +1,7 @@
 /* Elements that a surface cuts, in the CPU's executors: a block with an oblique face under constant stress is in
- * equilibrium with exact tractions on its faces, which shares alone do not give; forces are the derivative of the energy
- * that monitors find, of mixed elements with fibres too; gravity goes by exact weights; the step at rest holds; any
- * threads and vectors give the same bytes; and models that cannot be are refused. */
+ * equilibrium with exact tractions on its faces, which shares alone do not give; forces are the derivative of the
+ * energy that monitors find, of mixed elements with fibres too; gravity goes by exact weights; the step at rest holds;
+ * any threads and vectors give the same bytes; and models that cannot be are refused. */
 // needs: tled/*/*.c
 #include "solve/vectors.h"
 #include "tled/cpu/cpu.h"

@@ -1,9 +1,9 @@
 /* Elements that a surface cuts, of a model that has their moments (mesh/cut_moments.h): their forces are by the mean
- * strain of what is enclosed (physics/element_cut.h) and by its share; so is the body force, by exact weights, the means
- * of the corners' shape functions over it,
+ * strain of what is enclosed (physics/element_cut.h) and by its share; so is the body force, by exact weights, the
+ * means of the corners' shape functions over it,
  *     N_a = (1 + x_a x + ... + x_a y_a xy + ... + x_a y_a z_a xyz)/8,
- * x_a, y_a and z_a the signs of corner a. Each corner has an eighth of the mass, by the share: mass by these weights would
- * leave some nodes with next to none, and no step would be stable. What fills less than CUT_LEAST of its box has
+ * x_a, y_a and z_a the signs of corner a. Each corner has an eighth of the mass, by the share: mass by these weights
+ * would leave some nodes with next to none, and no step would be stable. What fills less than CUT_LEAST of its box has
  * the mass of so much, as a probe and pressures push nodes. Owns nothing but what the problem does.
  */
 #ifndef SINEW_CUT_H

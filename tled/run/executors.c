@@ -45,10 +45,14 @@ static const tled_volume *volume_that_wants(const tled_problem *p)
 
 executor_need tled_need(const tled_problem *p)
 {
-    const uint32_t meshes = p->conforming ? EXECUTOR_MESHES : 0, contact = p->collider ? EXECUTOR_CONTACT : 0,
-                   followers = p->followers ? EXECUTOR_FOLLOWERS : 0, mixtures = p->mix ? EXECUTOR_MIXTURES : 0,
-                   curves = p->curved ? EXECUTOR_CURVES : 0, fibres = p->fibres.of ? EXECUTOR_FIBRES : 0,
-                   series = p->serial ? EXECUTOR_SERIES : 0, cuts = p->cut.count ? EXECUTOR_CUTS : 0;
+    const uint32_t meshes = p->conforming ? EXECUTOR_MESHES : 0;
+    const uint32_t contact = p->collider ? EXECUTOR_CONTACT : 0;
+    const uint32_t followers = p->followers ? EXECUTOR_FOLLOWERS : 0;
+    const uint32_t mixtures = p->mix ? EXECUTOR_MIXTURES : 0;
+    const uint32_t curves = p->curved ? EXECUTOR_CURVES : 0;
+    const uint32_t fibres = p->fibres.of ? EXECUTOR_FIBRES : 0;
+    const uint32_t series = p->serial ? EXECUTOR_SERIES : 0;
+    const uint32_t cuts = p->cut.count ? EXECUTOR_CUTS : 0;
     const tled_volume *wants = volume_that_wants(p);
     executor_need need = {.features = meshes | contact | followers | mixtures | curves | fibres | series | cuts |
                                       features_of(p->form),
