@@ -149,6 +149,10 @@ near "$(sum 1 "$(get body.force.base "$T/out")")" 0 1e-7 "a muscle that is free 
 printf '0 displace 2cm,0,0,2cm,1,1 0,-,-\n0 contract all 0\n0.1 contract all 0.3\n' >"$T/script"
 tled-run -q --script "$T/script" --rest 1e-8 <"$T/based" >"$T/out"
 is "$(awk -v f="$(sum 1 "$(get body.force.base "$T/out")")" 'BEGIN { print (f > .1 * .3 * 30000 * 1e-4) }')" 1 "one that is held there pulls its base toward itself"
+pulls=$(sum 1 "$(get body.force.base "$T/out")")
+tled-run -q -m tissue.vmax=10 --script "$T/script" -t .4 --log "$T/log" <"$T/based" >"$T/out"
+near "$(sum 1 "$(get body.force.base "$T/out")")" "$pulls" 1e-3 "and by as much once it no longer moves, where its force depends on velocity"
+near "$(awk -F '\t' 'NR == 1 { for (i = 1; i <= NF; i++) if ($i ~ /^body.force.base.x/) at = i } END { print $at }' "$T/log")" "$pulls" 1e-3 "as its log says"
 
 # Files of poses, records, checkpoints
 printf '%s' "$turn" | sed 's/ about.*//; s/0\.1 move lid 1mm/0.1 move lid 0.001/; s/,2mm/,0.002/' >"$T/script"

@@ -108,16 +108,25 @@ static fibre_sets sets_at(const tled_problem *p, int64_t element)
     return to;
 }
 
+/* The muscle of a volume in an element, the second that it is mixed of or its own; share: of the element. */
+static element_fibre muscle_at(const tled_problem *p, const bodies_state *now, int64_t element, bool is_second,
+                               int32_t volume, double share)
+{
+    element_fibre muscle = muscle_fibre_of(p, is_second ? p->mixfibre : p->fibre, element, volume, share, now->value);
+    if (now->contractile[is_second])
+        muscle.series.contractile = now->contractile[is_second][element];
+    return muscle;
+}
+
 /* What an element pulls its corners with. */
-static element_field pull_of(const tled_problem *p, int64_t element, const double *value, const double *displacement)
+static element_field pull_of(const tled_problem *p, int64_t element, const bodies_state *now)
 {
     const double share = tled_fraction(p, element), mixture = tled_mixture(p, element);
     const int32_t mix = tled_mix(p, element);
     const tled_law of = tled_law_of(p, element);
-    const element_field u = field_at(p, element, displacement);
+    const element_field u = field_at(p, element, now->displacement);
     const fibre_sets sets = sets_at(p, element);
-    const element_fibre own =
-        muscle_fibre_of(p, p->fibre, element, p->element_volume[element], share * (1 - mixture), value);
+    const element_fibre own = muscle_at(p, now, element, false, p->element_volume[element], share * (1 - mixture));
     if (p->conforming) {
         const conforming_hold hold = conforming_hold_of(p, element);
         const element_any shape = conforming_shape(p, element, &hold);
@@ -125,7 +134,7 @@ static element_field pull_of(const tled_problem *p, int64_t element, const doubl
                                         element_fibre_which(own), sets.of, sets.count);
     }
     const element_shape box = element_box(p->side[0], p->side[1], p->side[2]);
-    const element_fibre other = muscle_fibre_of(p, p->mixfibre, element, mix, share * mixture, value);
+    const element_fibre other = muscle_at(p, now, element, true, mix, share * mixture);
     const element_law law = law_at(p->form, &of, of.hourglass, share);
     const int which = element_fibre_which(own), which_other = element_fibre_which(other);
     const float *cut = tled_cut(p, element);
@@ -140,7 +149,7 @@ static element_field pull_of(const tled_problem *p, int64_t element, const doubl
 
 typedef struct summing {
     const tled_problem *p;
-    const double *value, *displacement;
+    const bodies_state *now;
     double *middle;  /* bodies x 3, m: the mean of the nodes */
     body_load *part; /* chunks x bodies */
 } summing;
@@ -148,7 +157,7 @@ typedef struct summing {
 static void place_of(const summing *s, int64_t node, double x[3])
 {
     for (int a = 0; a < 3; a++)
-        x[a] = s->p->position[3 * node + a] + s->displacement[3 * node + a];
+        x[a] = s->p->position[3 * node + a] + s->now->displacement[3 * node + a];
 }
 
 /* Adds a force at a node to its body's load. */
@@ -173,7 +182,7 @@ static void element_work(void *context, int64_t chunk, int64_t from, int64_t to)
     body_load *list = s->part + chunk * p->bodies->count;
     for (int64_t i = from; i < to; i++) {
         const int64_t element = p->bodies->element[i];
-        const element_field f = pull_of(p, element, s->value, s->displacement);
+        const element_field f = pull_of(p, element, s->now);
         for (int c = 0; c < 8; c++) {
             const int64_t node = p->element_node[8 * element + c];
             const double force[3] = {-f.x.at[c], -f.y.at[c], -f.z.at[c]};
@@ -200,7 +209,7 @@ static void add_external(const summing *s, body_load *to)
     const bodies *b = s->p->bodies;
     for (int64_t k = 0; k < b->start[b->count]; k++) {
         double force[3];
-        tled_external(s->p, s->value, s->displacement + 3 * (int64_t)b->node[k], b->node[k], force);
+        tled_external(s->p, s->now->value, s->now->displacement + 3 * (int64_t)b->node[k], b->node[k], force);
         add_at(s, b->node[k], force, to);
     }
 }
@@ -211,8 +220,8 @@ static int add_pressures(const summing *s, pool *threads, body_load *to, err *e)
     const followers *f = s->p->followers;
     const int failed = followers_room(&w, f, e);
     if (!failed && f) {
-        followers_move(&w, s->displacement);
-        followers_press(&w, threads, s->value);
+        followers_move(&w, s->now->displacement);
+        followers_press(&w, threads, s->now->value);
         for (int64_t i = 0; i < f->nodes; i++) {
             double push[3];
             followers_pull(&w, i, push);
@@ -234,12 +243,11 @@ static void add_parts(const summing *s, int64_t chunks, body_load *to)
         }
 }
 
-int bodies_loads(const tled_problem *p, pool *threads, const double *value, const double *displacement, body_load *to,
-                 err *e)
+int bodies_loads(const tled_problem *p, pool *threads, const bodies_state *now, body_load *to, err *e)
 {
     const bodies *b = p->bodies;
     const int64_t chunks = pool_chunks(b->elements, CHUNK);
-    summing s = {.p = p, .value = value, .displacement = displacement};
+    summing s = {.p = p, .now = now};
     int failed = -1;
     memset(to, 0, (size_t)b->count * sizeof *to);
     s.middle = mem_array(b->count, 3 * sizeof *s.middle, "the bodies", e);
@@ -256,8 +264,7 @@ int bodies_loads(const tled_problem *p, pool *threads, const double *value, cons
     return failed;
 }
 
-int bodies_add(const tled_problem *p, pool *threads, const double *value, const double *displacement, frame *f,
-               const model *m, err *e)
+int bodies_add(const tled_problem *p, pool *threads, const bodies_state *now, frame *f, const model *m, err *e)
 {
     static const char *const names[] = {"body.pose", "body.force", "body.torque"};
     const bodies *b = p->bodies;
@@ -271,9 +278,9 @@ int bodies_add(const tled_problem *p, pool *threads, const double *value, const 
         to[i] = a->f64;
     }
     body_load *load = mem_array(b->count, sizeof *load, "the bodies", e);
-    const int failed = load ? bodies_loads(p, threads, value, displacement, load, e) : -1;
+    const int failed = load ? bodies_loads(p, threads, now, load, e) : -1;
     for (int32_t i = 0; !failed && i < b->count; i++) {
-        const pose at = pose_fit(p->position, displacement, b->node + b->start[i], b->start[i + 1] - b->start[i]);
+        const pose at = pose_fit(p->position, now->displacement, b->node + b->start[i], b->start[i + 1] - b->start[i]);
         pose_to_row(&at, to[0] + 7 * (int64_t)i);
         memcpy(to[1] + 3 * (int64_t)i, load[i].force, sizeof load[i].force);
         memcpy(to[2] + 3 * (int64_t)i, load[i].torque, sizeof load[i].torque);

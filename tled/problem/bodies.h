@@ -36,14 +36,17 @@ static inline int32_t bodies_count(const tled_problem *p)
     return p->bodies ? p->bodies->count : 0;
 }
 
-/* Fills `to` (one for each body) at displacements (nodes x 3, m) and the curves' values of that time. -1 with e
- * filled. */
-int bodies_loads(const tled_problem *p, pool *threads, const double *value, const double *displacement, body_load *to,
-                 err *e);
+/* What bodies are pulled by, borrowed: the curves' values; displacements, nodes x 3, m; of muscles in series with a
+ * spring, fields TLED_CONTRACTILE and TLED_MIXCONTRACTILE, elements, or NULL where the problem has none. */
+typedef struct bodies_state {
+    const double *value, *displacement, *contractile[2];
+} bodies_state;
+
+/* Fills `to`, one for each body. -1 with e filled. */
+int bodies_loads(const tled_problem *p, pool *threads, const bodies_state *now, body_load *to, err *e);
 
 /* Adds to a frame of m where the bodies are (as pose_fit finds it), and their loads, if there are bodies. -1 with e
  * filled. */
-int bodies_add(const tled_problem *p, pool *threads, const double *value, const double *displacement, frame *f,
-               const model *m, err *e);
+int bodies_add(const tled_problem *p, pool *threads, const bodies_state *now, frame *f, const model *m, err *e);
 
 #endif

@@ -304,6 +304,12 @@ const account_sums *account_read(account *a, const tled_executor *b, tled_state 
     return &a->now.sums;
 }
 
+bodies_state account_bodies(const account *a)
+{
+    const bodies_state now = {account_curves(a), a->now.displacement, {a->contractile[0], a->contractile[1]}};
+    return now;
+}
+
 const double *account_displacement(const account *a)
 {
     return a->now.displacement;

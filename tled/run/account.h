@@ -7,6 +7,7 @@
 #ifndef SINEW_ACCOUNT_H
 #define SINEW_ACCOUNT_H
 
+#include "tled/problem/bodies.h"
 #include "tled/problem/tled_executor.h"
 #include "tled/run/strained.h"
 
@@ -44,6 +45,9 @@ const account_sums *account_read(account *a, const tled_executor *b, tled_state 
 /* Of the last reading, nodes x 3, m, and the curves' values; borrowed until the next. */
 const double *account_displacement(const account *a);
 const double *account_curves(const account *a);
+
+/* The same, and of muscles, as bodies are pulled by. */
+bodies_state account_bodies(const account *a);
 
 /* Saves the account of now, in memory; and goes back to the one that was saved. */
 void account_save(account *a);

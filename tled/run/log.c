@@ -261,9 +261,8 @@ static int put_bodies(const run_log *l, err *e)
     if (!count)
         return 0;
     body_load *load = mem_array(count, sizeof *load, "the log", e);
-    const int failed =
-        load ? bodies_loads(l->p, l->threads, account_curves(l->account), account_displacement(l->account), load, e)
-             : -1;
+    const bodies_state now = account_bodies(l->account);
+    const int failed = load ? bodies_loads(l->p, l->threads, &now, load, e) : -1;
     for (int64_t i = 0; !failed && i < 6 * count; i++)
         put_number(l->rows, i / 3 % 2 ? load[i / 6].torque[i % 3] : load[i / 6].force[i % 3]);
     free(load);

@@ -60,14 +60,18 @@ static int add_results(session *s, frame *f, const double *value, err *e)
 }
 
 /* Where the bodies are, and what the tissue pulls them with; and what elements hold. */
-static int add_looks(session *s, frame *f, const double *displacement, err *e)
+static int add_looks(session *s, frame *f, const field_values *state, err *e)
 {
+    const int count = s->problem.fields.count;
     double *own;
     if (!bodies_count(&s->problem) && !s->results)
         return 0;
     const double *value = curves_at(s, f->time, &own, e);
-    const int failed = (!value && !s->live) ||
-                               bodies_add(&s->problem, s->folds.threads, value, displacement, f, &s->m, e) ||
+    const bodies_state now = {value,
+                              state->of[TLED_DISPLACEMENT],
+                              {count > TLED_CONTRACTILE ? state->of[TLED_CONTRACTILE] : NULL,
+                               count > TLED_MIXCONTRACTILE ? state->of[TLED_MIXCONTRACTILE] : NULL}};
+    const int failed = (!value && !s->live) || bodies_add(&s->problem, s->folds.threads, &now, f, &s->m, e) ||
                                add_results(s, f, value, e)
                            ? -1
                            : 0;
@@ -80,8 +84,7 @@ int tled_frame_write(void *context, double time, const field_values *state, err 
     session *s = context;
     frame f = {.index = s->next_frame++, .time = time};
     bool whole = !fields_lend(&s->problem.fields, FIELD_IN_FRAMES, state, &f, &s->m, e) &&
-                 !add_probe(s, &f, state->of[TLED_DISPLACEMENT], e) &&
-                 !add_looks(s, &f, state->of[TLED_DISPLACEMENT], e);
+                 !add_probe(s, &f, state->of[TLED_DISPLACEMENT], e) && !add_looks(s, &f, state, e);
     int result = whole && !put_frame(s, &f, e) && !(s->checkpoint && checkpoint_add(s->checkpoint, &f, e)) ? 0 : -1;
     frame_free(&f);
     if (s->live)
