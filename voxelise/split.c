@@ -211,7 +211,7 @@ static int repeat(const split *s, const voxels *x, voxels *to, int samples, err 
             for (int32_t n = 0; n < elements_of(s, cell) && !status; n++) {
                 const counted c = count_element(s, cell, n);
                 put_element(to, at, &c, samples);
-                status = x->cut.count && put_moments(s, cell, n, to, at, samples, e) ? -1 : 0;
+                status = x->moments && put_moments(s, cell, n, to, at, samples, e) ? -1 : 0;
                 at++;
                 status = status ? -1 : add_run(&runs, (climb_run){i, i + 1, rest.j, rest.k, c.volume}, e);
             }

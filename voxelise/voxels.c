@@ -338,6 +338,7 @@ static void put_shares(voxels *x, int64_t voxel, const shares_list *list)
 static int join_chunks(voxels *x, const work *w, err *e)
 {
     int64_t at = 0, voxel = 0;
+    x->moments = w->rule && w->rule->moments;
     for (int64_t i = 0; i < w->test->slabs; i++) {
         x->runs += w->chunk[i].to.runs;
         for (int64_t r = 0; r < w->chunk[i].to.runs; r++)

@@ -17,7 +17,8 @@ typedef struct voxels {
     float *fraction;    /* elements, by shares; otherwise NULL */
     int32_t *mix;       /* elements: the second volume, -1 = none; NULL where no element has one */
     float *mixture;     /* elements: its share of what is enclosed; likewise */
-    moments_list cut;   /* by shares, where moments are looked for: of elements that are enclosed in part */
+    bool moments;       /* by shares: they are looked for */
+    moments_list cut;   /* where they are: of elements that are enclosed in part */
     pieces_list part;   /* by shares, where slits are looked for */
 } voxels;
 

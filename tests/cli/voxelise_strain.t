@@ -36,6 +36,13 @@ vox -s 2.5 --fraction 8 --strain enclosed --threads 1 "$T/ball.obj"
 cp "$T/m" "$T/one"
 vox -s 2.5 --fraction 8 --strain enclosed --threads 3 "$T/ball.obj"
 check "the same bytes on three threads" cmp "$T/m" "$T/one"
+# A slit that no sample falls into, of a box that fills its voxels: their parts have moments too.
+awk 'BEGIN { split("0 0 20 0 20 20 8.6 20 8.6 10 8.3 10 8.3 20 0 20", p, " ")
+    for (k = 0; k < 2; k++) for (i = 0; i < 8; i++) print "v", p[2 * i + 1], 20 * k, p[2 * i + 2]
+    print "f 1 2 3 4 5 6 7 8\nf 16 15 14 13 12 11 10 9"
+    for (i = 1; i <= 8; i++) print "f", i % 8 + 1, i, i + 8, i % 8 + 9 }' >"$T/notch.obj"
+vox -s 5 --origin 0,0,0 --fraction 4 --strain enclosed "$T/notch.obj"
+is "$(rows cut.element | wc -l)" 16 "two parts of each of the eight voxels that a notch between samples divides"
 # A slit through voxels: each part has its own moments.
 {
     box skin 0 0 0 4 1.4 4
