@@ -143,6 +143,9 @@ refuse() { # NAME WANTED ARGS...
 refuse "a share of no peak" \
     "1 tled-run: material 'tissue' has passive=0.05, a share of the peak stress, but no peak stress; expected peak=PASCAL" \
     -m tissue.passive=.05 -m tissue.peak=0
+refuse "a velocity of no peak" \
+    "1 tled-run: material 'tissue' has vmax=10, the velocity of its muscles, but no peak stress; expected peak=PASCAL" \
+    -m tissue.vmax=10 -m tissue.peak=0
 refuse "an optimum out of range" "2 tled-run: -m tissue: 'optimum=3' is not allowed; expected 0.5 to 2" -m tissue.optimum=3
 refuse "a passive stress below 0" "2 tled-run: -m tissue: 'passive=-1' is not allowed; expected 0 to 10" -m tissue.passive=-1
 refuse "an exponent of 0" "2 tled-run: -m tissue: 'stiffening=0' is not allowed; expected 0.1 to 20" -m tissue.stiffening=0

@@ -282,6 +282,11 @@ static int make_muscle(tled_volume *v, const model *m, int32_t i, const material
                        "material '%s' has passive=%g, a share of the peak stress, but no peak stress; expected "
                        "peak=PASCAL",
                        material_of_volume(m, i), of->passive);
+    if (of->vmax > 0 && !(v->peak > 0))
+        return err_set(e, NULL, 0,
+                       "material '%s' has vmax=%g, the velocity of its muscles, but no peak stress; expected "
+                       "peak=PASCAL",
+                       material_of_volume(m, i), of->vmax);
     v->curved = material_muscle(of, v->muscle);
     v->serial = v->muscle[MUSCLE_SPRING] > 0;
     return 0;
