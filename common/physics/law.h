@@ -47,7 +47,7 @@
     X(passive, "1", 0, 10, "factor of the passive stress of its muscles, over peak, 0 if not given")                   \
     X(stiffening, "1", .1, 20, "exponent of the passive stress of its muscles, 6.6 if not given")                      \
     X(straight, "1", 1, 2, "stretch over optimum from which passive stress is linear, 1.4 if not given")               \
-    X(vmax, "1/s", 0, 1e3, "lengths by which its muscles shorten in a second without load; no limit if not given")     \
+    X(vmax, "1/s", 0, 1e3, "lengths by which its muscles shorten in a second without load, 0 (no limit) if not given") \
     X(series, "1", 1e-3, 1, "strain at peak stress of the spring in series with muscles of vmax, 0.04 if not given")
 
 /* The same of families of fibres, by their kind (fibre_kind.h). */

@@ -12,7 +12,7 @@
  * In a step the muscle is the spring alone, which has an energy. Between steps c goes on at a given lambda, by backward
  * Euler: that is one number x = w from a quadratic equation, whatever the length of the step, and never lets the spring
  * pull with more than 1.4 of the isometric stress. Read from velocities within a step, v would damp with
- * 5 peak / vmax, which at a peak of 1e5 Pa asks for steps below a microsecond. In the numbers of strain.h, whose rules
+ * 5 peak / vmax, which at a peak of 1e5 Pa asks for steps of .1 us. In the numbers of strain.h, whose rules
  * hold here. Owns nothing.
  */
 #ifndef SINEW_MUSCLE_SERIES_H

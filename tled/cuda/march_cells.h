@@ -8,8 +8,8 @@
 march_cell march_cell_of(const march *m, const tled_problem *p, int64_t element);
 bool march_cell_special(const march *m, const tled_problem *p, const march_cell *cell);
 
-/* The most families of fibres of an element. -1: a march has no such fibres, as there are two volumes' in an element,
- * those of the law fung, or muscles with curves of their own. */
+/* The most families of fibres of an element. -1: a march has no such fibres, as there are those of the second volume of
+ * an element, those of the law fung, or muscles with curves of their own. */
 int march_families_of(const tled_problem *p);
 
 /* Whether a law of the form `first` has powers of x beyond the second. */

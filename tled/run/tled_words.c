@@ -19,8 +19,8 @@ void words_start(const session *s, const char *device, const struct options *o)
              (long long)p->nodes, (long long)p->held, device, o->precision ? "single" : "double");
     const int64_t least = cut_least(p);
     if (least)
-        tool_say(s->t, "%lld cut element%s of less than %g of a voxel move%s with the mass of so much",
-                 (long long)least, least == 1 ? "" : "s", CUT_LEAST, least == 1 ? "s" : "");
+        tool_say(s->t, "%lld cut element%s, of which less than %g is enclosed, the mass is that of %g",
+                 (long long)least, least == 1 ? "" : "s", CUT_LEAST, CUT_LEAST);
     tool_say(s->t, "stable step %.6g ms, dt %.6g ms, damping %.4g 1/s%s", 1e3 * s->stable,
              1e3 / r->rate / (double)live_parts(s->live), r->damping, r->adapt ? ", then adapted" : "");
     if (!r->point && p->start > 0 && p->start >= o->ramp && (o->contract.count || o->gravity.count))
