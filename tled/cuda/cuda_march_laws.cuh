@@ -5,8 +5,8 @@
  * need no slopes, and the forces on these, V P L, no areas. With G' = cof F' and V' = 64 V = c_x c_y c_z,
  *     V P L = all V L + own V H' L^2 + g (G' - V' L)/64,   J - 1 = (det F' - V')/V',
  * all, own and g being those of `stress` (cuda_cells.cuh). The strains of a mode, 1/(4 h_i) times q_i, are
- * e = F'^-1 m. With s = dW/de the forces on the mode are f = F'^-T s, and V P L has -f (x) e. The three shears share one
- * sum: with a, b, c the strains yz.x, zx.y, xy.z and l = 1/c,
+ * e = F'^-1 m. With s = dW/de the forces on the mode are f = F'^-T s, and V P L has -f (x) e. The three shears share
+ * one sum: with a, b, c the strains yz.x, zx.y, xy.z and l = 1/c,
  *     s_a = mu V/3 ((l_y^2 + l_z^2 - l_x^2)/l_x^2 a + (a + b + c)). */
 #ifndef SINEW_CUDA_MARCH_LAWS_CUH
 #define SINEW_CUDA_MARCH_LAWS_CUH
