@@ -11,9 +11,6 @@ block() {
 planes='0 displace -1,-1,-1,0,1,1 0,-,-
 0 displace -1,-1,-1,1,0,1 -,0,-
 0 displace -1,-1,-1,1,1,0 -,-,0'
-below() { # VALUE LIMIT NAME
-    is "$(awk -v a="$1" -v b="$2" 'BEGIN { print (a < b) }')" 1 "$3: $1"
-}
 # end FILE [FRAME]: the stretch of a bar of 10 mm, in the last frame or a frame.
 end() {
     sinew info --tsv node.displacement.at.0.01,0.0025,0.0025 "$1" |

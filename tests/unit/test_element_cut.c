@@ -34,7 +34,7 @@ static double number(void)
 static part part_by_chance(int planes, float moments[7], double *share)
 {
     part p = part_box();
-    double of[7];
+    double of[7] = {0};
     *share = 0;
     while (!(*share > 1e-6 && *share < 1 - 1e-6)) {
         p = part_box();

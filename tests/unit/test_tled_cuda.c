@@ -178,7 +178,7 @@ static void test_marched_as(const tled_executor *cuda, const char *name)
 /* Laws beside the neo-Hookean, and fibres. */
 static void test_laws_marched(const tled_executor *cuda)
 {
-    static const block_fibres *const all[] = {&quadratic_fibres, &hgo_fibres, &two_families};
+    static const block_fibres *const all[] = {&quadratic_fibres, &hgo_fibres, &two_families, NULL};
     block mixed = large;
     mixed.mixed = true;
     in_form = FORM_MOONEY_RIVLIN;
@@ -188,7 +188,7 @@ static void test_laws_marched(const tled_executor *cuda)
     test_marched_as(cuda, "first");
     test_marched(&mixed, .5, false, 60, cuda, "first, elements mixed of two muscles");
     in_form = FORM_NEO_HOOKEAN;
-    for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
+    for (size_t i = 0; all[i]; i++) {
         in_fibres = all[i];
         test_marched_as(cuda, all[i]->name);
     }

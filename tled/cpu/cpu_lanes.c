@@ -450,9 +450,7 @@ static inline void layer_forces(const cpu_work *w, const rows_layer *l, element_
     for (const rows_run *run = w->r->run + l->run; run < w->r->run + l->run + l->runs; run++)
         if (w->cut && run->cut >= 0)
             cut_forces(w, run, shape);
-        else if (fibred && is_fibred(w, run))
-            fibred_forces(w, run, shape);
-        else if (serial && (is_serial(w, run->volume) || is_serial(w, run->mix)))
+        else if ((fibred && is_fibred(w, run)) || (serial && (is_serial(w, run->volume) || is_serial(w, run->mix))))
             fibred_forces(w, run, shape);
         else if (run->mix >= 0)
             any_mixed_forces(w, run, shape);
