@@ -157,8 +157,9 @@ static void test_matrix(void)
         step_matrix a;
         stability_matrix(FORM_NEO_HOOKEAN, c, 1, side, h, fibre, none, &a);
         const element_tensor z = element_along(1 / element_length(m), m, fibre.along);
-        const double *at = &z.xx, along = pushed(h, z, c, fibre, none);
-        double sum = 0;
+        const double along = pushed(h, z, c, fibre, none);
+        double at[9], sum = 0;
+        memcpy(at, &z, sizeof at);
         for (int r = 0; r < 81; r++)
             sum += at[r / 9] * a.at[r / 9][r % 9] * at[r % 9];
         worst = fmax(worst, fabs(sum / along - 1));
