@@ -2,7 +2,7 @@
 #include "tests/emulate/any_form.h"
 
 #define CUDA_EXECUTOR any_form_single
-#define CUDA_OWN(X)   X(NEO_HOOKEAN, CUDA_MARCH)
+#define CUDA_OWN(X)
 #define CUDA_OWN_FIBRED(X)
 #define ELEMENT_SINGLE
 #include "tled/cuda/cuda_loops.cuh"

@@ -16,16 +16,17 @@ extern "C" {
 #include "physics/hourglass_numbers.h"
 }
 
-/* The ways in which a card takes steps, as bits. */
-enum cuda_way { CUDA_TILES = 1, CUDA_RESIDENT = 2, CUDA_MARCH = 4 };
+/* The ways in which a card takes steps by tiles, as bits. cuda_march.cuh's MARCHES says what the march has kernels
+ * for. */
+enum cuda_way { CUDA_TILES = 1, CUDA_RESIDENT = 2 };
 
-/* X(NAME, ways): the forms that have kernels of their own, and in which ways. The march has no others, and not
- * all of these (cuda_march.cuh's MARCHES). A form that is not here costs no kernel. */
+/* X(NAME, ways): the forms that have kernels of their own, and in which ways. A form that is not here costs no
+ * kernel. */
 #ifndef CUDA_OWN
 #define CUDA_OWN(X)                                                                                                    \
-    X(NEO_HOOKEAN, CUDA_TILES | CUDA_RESIDENT | CUDA_MARCH)                                                            \
-    X(MOONEY_RIVLIN, CUDA_TILES | CUDA_RESIDENT | CUDA_MARCH)                                                          \
-    X(FIRST, CUDA_TILES | CUDA_RESIDENT | CUDA_MARCH)
+    X(NEO_HOOKEAN, CUDA_TILES | CUDA_RESIDENT)                                                                         \
+    X(MOONEY_RIVLIN, CUDA_TILES | CUDA_RESIDENT)                                                                       \
+    X(FIRST, CUDA_TILES | CUDA_RESIDENT)
 #endif
 
 /* Likewise, of kernels with fibres under physical control, for all kinds of tiles. */
@@ -49,15 +50,6 @@ static constexpr int cuda_own_fibred_ways(form which)
     return 0;
 }
 #undef OWN_ROW
-
-/* The forms that have kernels of their own in a way: bit i for form i. */
-static constexpr uint32_t cuda_own_forms(cuda_way way)
-{
-    uint32_t forms = 0;
-    for (int f = 0; f < FORM_STEPPED; f++)
-        forms |= cuda_own_ways((form)f) & way ? 1u << f : 0;
-    return forms;
-}
 
 enum { LAWS_NEAR = 16 /* volumes whose laws stand in shared memory */ };
 

@@ -113,6 +113,15 @@ static constexpr int march_families(march_control k)
 }
 #undef MARCH_ROW
 
+/* The forms that it has kernels for: bit i for form i. */
+static constexpr uint32_t march_forms(void)
+{
+    uint32_t forms = 0;
+    for (int k = 0; k < MARCH_CONTROLS; k++)
+        forms |= 1u << march_form((march_control)k);
+    return forms;
+}
+
 static constexpr bool march_cubes(march_control k)
 {
     return k >= MARCH_CUBES;

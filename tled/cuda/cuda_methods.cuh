@@ -279,12 +279,11 @@ static double more_plain(const tled_problem *p, const tled_law *law, double weig
         to->slope[0] = (float)(2 * weight * law->c[1]);
         return 2 * law->c[0];
     }
-    for (int k = 0; p->form == FORM_FIRST && k < MARCH_POWERS; k++) {
+    for (int k = 0; p->form == FORM_FIRST && k < MARCH_POWERS; k++)
         to->slope[k] = (float)(2 * (k + 1) * weight * law->c[k]);
-        if (k)
-            to->shear[k - 1] = (float)((k + 1) * (2 * k + 1) * law->c[k] / law->c[0]);
-        if (k)
-            to->rise[k - 1] = (float)(k * (k + 1) * (2 * k + 1) * law->c[k] / law->c[0]);
+    for (int k = 1; p->form == FORM_FIRST && k < MARCH_POWERS; k++) {
+        to->shear[k - 1] = (float)((k + 1) * (2 * k + 1) * law->c[k] / law->c[0]);
+        to->rise[k - 1] = (float)(k * (k + 1) * (2 * k + 1) * law->c[k] / law->c[0]);
     }
     return law->mu;
 }
@@ -293,8 +292,7 @@ static void family_plain(const march *m, const tled_problem *p, double weight, m
 {
     const fibre_numbers *of = &p->fibres.of[m->plain];
     const double square = 16 * p->side[0] * p->side[0], along = 1 - 3 * of->kappa;
-    const bool twice = m->families == 2 && fibre_numbers_families(of) == 1; /* as march_cells.c has it */
-    *to = {(float)((twice ? 1 : 2) * weight * of->k1),
+    *to = {(float)(2 * weight * march_stiffness(m, of)),
            (float)(of->k2 * M_LOG2E),
            (float)(FIBRE_CAP * M_LOG2E),
            (float)(3 * of->kappa),
@@ -465,7 +463,7 @@ static void march_end(cuda_state *s)
 
 enum {
     TILES_FORMS = (1 << FORM_STEPPED) - 1,
-    MARCH_FORMS = sizeof(real) == sizeof(float) ? cuda_own_forms(CUDA_MARCH) : 0 /* in single precision alone */
+    MARCH_FORMS = sizeof(real) == sizeof(float) ? march_forms() : 0 /* in single precision alone */
 };
 
 /* The preferred first. What is left takes the last. */

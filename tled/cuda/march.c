@@ -308,6 +308,7 @@ static int mark_special(cutter *c)
         return -1;
     for (int64_t i = 0; i < p->elements; i++) {
         const march_cell cell = march_cell_of(c->m, p, i);
+        c->m->curved |= cell.more[0] != 0 || cell.more[1] != 0 || cell.more[2] != 0;
         for (int k = march_cell_special(c->m, p, &cell) ? cell_spots(c, i, at) : 0; k--;)
             c->special[at[k].layer] = true;
     }
@@ -557,7 +558,6 @@ int march_make(march *m, const tled_problem *p, int64_t slots, err *e)
     bool suited;
     int result = -1;
     m->families = march_families_of(p);
-    m->curved = march_curved(p);
     if (p->nodes > MARCH_NODE || m->families < 0)
         return 0;
     c.part = mem_array(p->nodes, sizeof *c.part, "the march", e);

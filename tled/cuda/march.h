@@ -85,7 +85,7 @@ typedef struct march {
     int32_t *detail;  /* layers + MARCH_AHEAD: where its special cells stand in `which`, in layers; or -1 */
     int32_t *which;   /* details x MARCH_THREADS: in cell, from 1 on; 0: none */
     march_cell *cell;
-    bool curved;     /* some cell's `more` is not 0, or would be if it were special */
+    bool curved;     /* some cell has a `more` that is not 0, or would have it if it were special */
     int families;    /* of fibres that resist being stretched, the most of a cell */
     uint32_t *along; /* ((layers + MARCH_AHEAD) x MARCH_THREADS + tips x 8) x 2: the directions of cells' and of
                       * tips' elements' (march_cells.h); NULL: there are none */

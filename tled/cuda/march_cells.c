@@ -36,25 +36,26 @@ static void put_law(const tled_problem *p, const tled_law *law, double share, ma
     }
 }
 
-/* Of two families, those of a cell that has one are alike. */
+double march_stiffness(const march *m, const fibre_numbers *of)
+{
+    return m->families == 2 && fibre_numbers_families(of) == 1 ? of->k1 / 2 : of->k1;
+}
+
 static void put_family(const march *m, const fibre_numbers *of, double share, march_cell *to)
 {
-    const bool twice = m->families == 2 && fibre_numbers_families(of) == 1;
-    to->family[0] = (float)((twice ? .5 : 1) * share * of->k1);
+    to->family[0] = (float)(share * march_stiffness(m, of));
     to->family[1] = (float)of->k2;
     to->family[2] = (float)of->kappa;
     to->family[3] = (float)of->angle;
 }
 
-/* What has no fibres has the plain ones, so that it is not special for that. */
-static void put_fibres(const march *m, const tled_problem *p, int64_t element, double share, march_cell *to)
+/* Of the element's own volume; share: of the cell. What has no fibres has the plain ones, so that it is not special for
+ * that. */
+static void put_fibres(const march *m, const tled_problem *p, int32_t volume, double share, march_cell *to)
 {
-    fibre_local at[2];
-    if (!p->fibres.of)
-        return;
-    if (fibres_at(&p->fibres, element, at))
-        put_family(m, &at[0].of, share * at[0].share, to);
-    else
+    if (fibres_any(&p->fibres, volume))
+        put_family(m, &p->fibres.of[volume], share, to);
+    else if (p->fibres.of)
         put_family(m, &p->fibres.of[m->plain], 1, to);
 }
 
@@ -62,11 +63,11 @@ march_cell march_cell_of(const march *m, const tled_problem *p, int64_t element)
 {
     const tled_law law = tled_law_of(p, element);
     const double share = tled_fraction(p, element), other = tled_mixture(p, element);
+    const int32_t volume = p->element_volume[element];
     march_cell cell = {.muscle = {{.curve = -1}, {.curve = -1}}};
     put_law(p, &law, share, &cell);
-    put_fibres(m, p, element, share, &cell);
-    add_muscle(m, &p->volume[p->element_volume[element]], &cell, p->fibre ? p->fibre + 3 * element : NULL,
-               share * (1 - other));
+    put_fibres(m, p, volume, share * (1 - other), &cell);
+    add_muscle(m, &p->volume[volume], &cell, p->fibre ? p->fibre + 3 * element : NULL, share * (1 - other));
     if (tled_mix(p, element) >= 0)
         add_muscle(m, &p->volume[tled_mix(p, element)], &cell, p->mixfibre ? p->mixfibre + 3 * element : NULL,
                    share * other);
@@ -89,25 +90,17 @@ int march_families_of(const tled_problem *p)
     int most = 0;
     if (p->curved)
         return -1;
-    for (int64_t i = 0; p->fibres.of && i < p->elements; i++) {
-        fibre_local at[2];
-        const int count = fibres_at(&p->fibres, i, at);
-        if (count > 1 || (count && (at[0].is_second || at[0].of.c > 0)))
+    for (int32_t v = 0; p->fibres.of && v < p->volumes; v++) {
+        const fibre_numbers *of = &p->fibres.of[v];
+        const int families = p->volume[v].elements ? fibre_numbers_families(of) : 0;
+        if (p->volume[v].elements && of->c > 0)
             return -1;
-        const int families = count ? fibre_numbers_families(&at[0].of) : 0;
         most = families > most ? families : most;
     }
+    for (int64_t i = 0; p->fibres.mix && i < p->elements; i++)
+        if (fibres_any(&p->fibres, p->fibres.mix[i]))
+            return -1;
     return most;
-}
-
-bool march_curved(const tled_problem *p)
-{
-    for (int64_t i = 0; p->form == FORM_FIRST && i < p->elements; i++) {
-        const tled_law law = tled_law_of(p, i);
-        if (law.c[2] != 0 || law.c[3] != 0 || law.c[4] != 0)
-            return true;
-    }
-    return false;
 }
 
 int64_t march_along_tips(const march *m)

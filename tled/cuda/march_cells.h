@@ -12,8 +12,8 @@ bool march_cell_special(const march *m, const tled_problem *p, const march_cell 
  * an element, those of the law fung, or muscles with curves of their own. */
 int march_families_of(const tled_problem *p);
 
-/* Whether a law of the form `first` has powers of x beyond the second. */
-bool march_curved(const tled_problem *p);
+/* k1 of each family, Pa: where some cells have two, those of a volume that has one are two alike. */
+double march_stiffness(const march *m, const fibre_numbers *of);
 
 /* The directions of fibres: two numbers of 32 bits for each place of all layers, then for each element of tips, from
  * row march_along_tips on. A direction a0 of length 1 along the march's axes is told by a0/(|x| + |y| + |z|), without
