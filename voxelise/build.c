@@ -288,7 +288,7 @@ static int add_moments(model *m, const moments_list *list, err *e)
     model_array *element = model_add(m, "cut.element", e), *of = element ? model_add(m, "cut.moments", e) : NULL;
     for (int64_t i = 0; of && i < list->count; i++) {
         element->i32[i] = (int32_t)list->voxel[i].element;
-        memcpy(of->f32 + MOMENTS * i, list->voxel[i].of, sizeof list->voxel[i].of);
+        memcpy(of->f32 + CUT_MOMENTS * i, list->voxel[i].of, sizeof list->voxel[i].of);
     }
     return of ? 0 : -1;
 }

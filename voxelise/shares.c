@@ -91,15 +91,15 @@ void moments_forget(moments *m, int64_t from, int64_t past)
 void moments_add_sample(moments_sums *s, int samples, int i, int j, int k)
 {
     const int64_t x = place_of(i, samples), y = place_of(j, samples), z = place_of(k, samples);
-    const int64_t of[MOMENTS] = {x, y, z, x * y, y * z, z * x, x * y * z};
+    const int64_t of[CUT_MOMENTS] = {x, y, z, x * y, y * z, z * x, x * y * z};
     s->count++;
-    for (int n = 0; n < MOMENTS; n++)
+    for (int n = 0; n < CUT_MOMENTS; n++)
         s->of[n] += of[n];
 }
 
 int moments_list_add(moments_list *to, int64_t element, const moments_sums *s, int samples, err *e)
 {
-    static const int factors[MOMENTS] = {1, 1, 1, 2, 2, 2, 3};
+    static const int factors[CUT_MOMENTS] = {1, 1, 1, 2, 2, 2, 3};
     const int64_t n = samples;
     if (s->count == n * n * n)
         return 0;
@@ -107,7 +107,7 @@ int moments_list_add(moments_list *to, int64_t element, const moments_sums *s, i
         return -1;
     moments_voxel *v = &to->voxel[to->count++];
     v->element = element;
-    for (int i = 0; i < MOMENTS; i++)
+    for (int i = 0; i < CUT_MOMENTS; i++)
         v->of[i] =
             (float)((double)s->of[i] / (double)(s->count * n * (factors[i] > 1 ? n : 1) * (factors[i] > 2 ? n : 1)));
     return 0;

@@ -12,6 +12,7 @@
 #ifndef SINEW_SHARES_H
 #define SINEW_SHARES_H
 
+#include "mesh/cut_moments.h"
 #include "voxelise/climb.h"
 
 /* ---- moments
@@ -21,11 +22,9 @@
  * whole numbers, so sums are exact, in any order.
  */
 
-enum { MOMENTS = 7 };
-
 typedef struct moments_voxel {
     int64_t element;
-    float of[MOMENTS]; /* in the order above */
+    float of[CUT_MOMENTS];
 } moments_voxel;
 
 /* In the order of the elements. */
@@ -36,7 +35,7 @@ typedef struct moments_list {
 
 /* Sums over samples: how many, and of each product of places. */
 typedef struct moments_sums {
-    int64_t count, of[MOMENTS];
+    int64_t count, of[CUT_MOMENTS];
 } moments_sums;
 
 /* Adds a sample of a voxel of `samples` along a side: i, j, k from 0. */

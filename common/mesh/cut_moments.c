@@ -1,7 +1,5 @@
 #include "mesh/cut_moments.h"
 
-#include "physics/element_cut.h"
-
 static int check_order(const cut_moments *of, err *e)
 {
     for (int64_t i = 1; i < of->count; i++)

@@ -6,9 +6,12 @@
 
 #include "model/model.h"
 
+/* Columns of cut.moments: means of x, y, z, xy, yz, zx, and xyz, which loads by volume take. */
+enum { CUT_XYZ = 6, CUT_MOMENTS };
+
 typedef struct cut_moments {
     const int32_t *element; /* ascending */
-    const float *of;        /* count x CUT_MOMENTS: x, y, z, xy, yz, zx, xyz */
+    const float *of;        /* count x CUT_MOMENTS */
     int64_t count;          /* 0: no element has any */
 } cut_moments;
 

@@ -52,7 +52,7 @@ static element_motion of_hexahedron(const element_mesh *m, const int32_t *node, 
     if (m->is_lattice) {
         to.squares = hourglass_squares(m->side);
         const element_vector slope = element_box(m->side[0], m->side[1], m->side[2]).slope;
-        to.h = cut ? element_cut_gradient(x, y, z, slope, element_cut_of(cut)) : element_gradient(x, y, z, slope);
+        to.h = element_gradient_by(cut, x, y, z, slope);
     } else {
         to.any = shape_of(m, node, &to.squares);
         to.volume = to.any.volume;

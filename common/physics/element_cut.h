@@ -83,13 +83,18 @@ ELEMENT_FUNCTION element_field element_force_cut(form f, hourglass_kind kind, el
 }
 
 #ifdef REAL_IS_DOUBLE
-/* Columns of cut.moments: these six, and the mean of xi eta zeta, which loads by volume take. */
-enum { CUT_MOMENTS = 7, CUT_XYZ = 6 };
-
+/* moments: a row of cut.moments (mesh/cut_moments.h). */
 ELEMENT_FUNCTION element_cut element_cut_of(const float *moments)
 {
     const element_cut c = {moments[0], moments[1], moments[2], moments[3], moments[4], moments[5]};
     return c;
+}
+
+/* H of a box that may be cut; moments: NULL where it is whole. */
+ELEMENT_FUNCTION element_tensor element_gradient_by(const float *moments, element_modes x, element_modes y,
+                                                    element_modes z, element_vector slope)
+{
+    return moments ? element_cut_gradient(x, y, z, slope, element_cut_of(moments)) : element_gradient(x, y, z, slope);
 }
 #endif
 

@@ -243,9 +243,9 @@ static int64_t owner_of(const voxels *samples, int n, const int *cell, int64_t *
 }
 
 /* The means of all products of places in a cell, over its samples. */
-static void means_of(const voxels *samples, int n, const int *cell, int64_t total, double mean[MOMENTS])
+static void means_of(const voxels *samples, int n, const int *cell, int64_t total, double mean[CUT_MOMENTS])
 {
-    memset(mean, 0, MOMENTS * sizeof *mean);
+    memset(mean, 0, CUT_MOMENTS * sizeof *mean);
     for (int64_t r = 0; r < samples->runs; r++) {
         const climb_run *a = &samples->run[r];
         for (int i = a->from; i < a->to; i++) {
@@ -255,19 +255,20 @@ static void means_of(const voxels *samples, int n, const int *cell, int64_t tota
                 continue;
             for (int k = 0; k < 3; k++)
                 x[k] = (2 * at[k] + 1) / (double)n - 1;
-            const double all[MOMENTS] = {x[0], x[1], x[2], x[0] * x[1], x[1] * x[2], x[2] * x[0], x[0] * x[1] * x[2]};
-            for (int k = 0; k < MOMENTS; k++)
+            const double all[CUT_MOMENTS] = {
+                x[0], x[1], x[2], x[0] * x[1], x[1] * x[2], x[2] * x[0], x[0] * x[1] * x[2]};
+            for (int k = 0; k < CUT_MOMENTS; k++)
                 mean[k] += all[k] / (double)total;
         }
     }
 }
 
-/* Whether the next of the moments found is this element's, as it has to be if it is enclosed in part. */
-static bool has_moments(const voxels *x, int64_t element, int64_t *next, bool in_part, const double mean[MOMENTS])
+/* Returns whether an element has the next row of moments if it is enclosed in part, and has none if it is not. */
+static bool has_moments(const voxels *x, int64_t element, int64_t *next, bool in_part, const double mean[CUT_MOMENTS])
 {
     const bool has = *next < x->cut.count && x->cut.voxel[*next].element == element;
     bool good = has == in_part;
-    for (int k = 0; good && has && k < MOMENTS; k++)
+    for (int k = 0; good && has && k < CUT_MOMENTS; k++)
         good = fabs((double)x->cut.voxel[*next].of[k] - mean[k]) < 1e-6;
     *next += has;
     return good;
@@ -296,7 +297,7 @@ static bool same_as_samples(const scene *s, const shares_rule *rule)
         int64_t total, owner = owner_of(&samples, rule->samples, cell, &total);
         bool is_element = total > 0 && (double)total >= rule->least * (double)all;
         good = volume[c] == (is_element ? owner : -1);
-        double mean[MOMENTS];
+        double mean[CUT_MOMENTS];
         if (!good || !is_element)
             continue;
         means_of(&samples, rule->samples, cell, total, mean);

@@ -27,9 +27,7 @@ deformed deformed_of(const tled_problem *p, int64_t element, element_shape box, 
         f = element_any_hourglass(p->control.kind, d.modes, d.h, &any, hold.law);
         d.rest = any.volume;
     } else {
-        const float *cut = tled_cut(p, element);
-        d.h =
-            cut ? element_cut_gradient(x, y, z, box.slope, element_cut_of(cut)) : element_gradient(x, y, z, box.slope);
+        d.h = element_gradient_by(tled_cut(p, element), x, y, z, box.slope);
         d.modes = element_hourglass_modes(x, y, z);
         f = hourglass_of(p->control.kind, d.modes, d.h, box, d.law.hourglass);
         d.rest = p->side[0] * p->side[1] * p->side[2];
