@@ -1,5 +1,5 @@
 # shellcheck shell=sh
-# Closed boxes as OBJ groups, for the tests of voxelise.
+# Closed boxes as OBJ groups, and models of them, for the tests of voxelise.
 
 # box NAMES X0 Y0 Z0 X1 Y1 Z1: its vertices are counted back from the end, so that boxes follow one another.
 box() {
@@ -20,4 +20,14 @@ soup() {
             for (i = 2; i <= NF; i++) { print v[$i < 0 ? n + 1 + $i : $i]; line = line " " i - NF - 1 }
             print line
         }' "$1"
+}
+
+# vox ARGS...: voxelise as text into $T/m.
+vox() {
+    voxelise -q --text --unit mm "$@" >"$T/m" 2>"$T/said"
+}
+
+# rows ARRAY: of $T/m, a line each.
+rows() {
+    awk -v a="$1" '$1 == "array" { on = $2 == a; next } /^[a-z]/ { on = 0 } on' "$T/m"
 }

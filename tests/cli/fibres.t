@@ -4,20 +4,9 @@
 # is refused.
 # shellcheck source=tests/cli/lib.sh
 . "$(dirname "$0")/lib.sh"
+# shellcheck source=tests/cli/tissue.sh
+. tests/cli/tissue.sh
 
-# block NX NY NZ H ARGS...: a muscle with the corner at the origin, fibres along x.
-block() {
-    awk -v nx="$1" -v ny="$2" -v nz="$3" -v h="$4" -v muscle=1 -f tests/cli/block.awk
-}
-# Planes of symmetry.
-planes='0 displace -1,-1,-1,0,1,1 0,-,-
-0 displace -1,-1,-1,1,0,1 -,0,-
-0 displace -1,-1,-1,1,1,0 -,-,0'
-# bar PRESSURE: a script that pulls the end of a bar of 40 x 10 x 10 mm.
-bar() {
-    echo "$planes"
-    echo "0 force 0.04,0.005,0.005 0.008 $(awk -v p="$1" 'BEGIN { printf "%.9g", p * 1e-4 }'),0,0"
-}
 # stretched FILE: of a bar, its length and its sides, as shares of those at rest.
 stretched() {
     sinew info --get node.displacement.at.0.04,0.01,0.01 "$1" |
@@ -33,7 +22,7 @@ directed() {
         !skip' "$1"
 }
 
-block 4 1 1 0.01 >"$T/bar"
+block 4 1 1 0.01 -v muscle=1 >"$T/bar"
 grep -v '^meta lattice' "$T/bar" >"$T/mesh"
 rubber='-m tissue.law=mooney-rivlin -m tissue.c10=5000 -m tissue.c01=0 -m tissue.K=5e5'
 hgo='-m tissue.fibre=hgo -m tissue.k1=2e4 -m tissue.k2=2'
@@ -68,22 +57,8 @@ hgo='-m tissue.fibre=hgo -m tissue.k1=2e4 -m tissue.k2=2'
 
     for model in bar mesh; do
         for precision in double single; do
-            first=
-            for set in plain AVX2 AVX-512; do
-                for threads in 1 2; do
-                    name="$model, $precision, $set, $threads threads"
-                    SINEW_VECTORS=$set tled-run -q --text -d cpu --precision $precision --threads $threads --rest 1e-4 \
-                        --script "$T/script" $rubber $hgo <"$T/$model" >"$T/out" 2>"$T/said"
-                    if grep -q SINEW_VECTORS "$T/said"; then
-                        skip 1 "$name: this processor cannot"
-                        continue
-                    fi
-                    mv "$T/out" "$T/last"
-                    sum=$(sed -n '/^frame/,$p' "$T/last" | cksum)
-                    is "$sum" "${first:=$sum}" "$name: the same bytes"
-                done
-            done
-            near "$(stretched "$T/last" | cut -d ' ' -f 1)" 1.2 1e-4 "$model, $precision: pulled to 1.2"
+            same_by_sets "1 2" $precision $model --precision $precision --rest 1e-4 --script "$T/script" $rubber $hgo
+            near "$(stretched "$T/same" | cut -d ' ' -f 1)" 1.2 1e-4 "$model, $precision: pulled to 1.2"
         done
     done
 

@@ -38,22 +38,8 @@ X
 
     for model in bar mesh; do
         for precision in double single; do
-            first=
-            for set in plain AVX2 AVX-512; do
-                for threads in 1 2; do
-                    name="$model, $precision, $set, $threads threads"
-                    SINEW_VECTORS=$set tled-run -q --text -d cpu --precision $precision --threads $threads \
-                        --rest 1e-4 --script "$T/pull" $tissue <"$T/$model" >"$T/by" 2>"$T/said"
-                    if grep -q SINEW_VECTORS "$T/said"; then
-                        skip 1 "$name: this processor cannot"
-                        continue
-                    fi
-                    mv "$T/by" "$T/out"
-                    sum=$(sed -n '/^frame/,$p' "$T/out" | cksum)
-                    is "$sum" "${first:=$sum}" "$name: the same bytes"
-                done
-            done
-            near "$(stretched "$T/out" | cut -d ' ' -f 1)" 1.2 1e-4 "$model, $precision: pulled to 1.2"
+            same_by_sets "1 2" $precision $model --precision $precision --rest 1e-4 --script "$T/pull" $tissue
+            near "$(stretched "$T/same" | cut -d ' ' -f 1)" 1.2 1e-4 "$model, $precision: pulled to 1.2"
         done
     done
 

@@ -3,14 +3,9 @@
 # against Hill's law in closed form; smaller steps; energies; every executor of the processor; frames to go on from.
 # shellcheck source=tests/cli/lib.sh
 . "$(dirname "$0")/lib.sh"
+# shellcheck source=tests/cli/tissue.sh
+. tests/cli/tissue.sh
 
-# block ARGS...: a block with the corner at the origin, of one muscle with fibres along x.
-block() {
-    awk -v muscle=1 "$@" -f tests/cli/block.awk
-}
-planes='0 displace -1,-1,-1,0,1,1 0,-,-
-0 displace -1,-1,-1,1,0,1 -,0,-
-0 displace -1,-1,-1,1,1,0 -,-,0'
 # end FILE [FRAME]: the stretch of a bar of 10 mm, in the last frame or a frame.
 end() {
     sinew info --tsv node.displacement.at.0.01,0.0025,0.0025 "$1" |
@@ -24,7 +19,7 @@ nominal() {
 }
 
 # Tissue that is much softer than its muscle.
-block -v nx=4 -v ny=1 -v nz=1 -v h=0.0025 -v E=30 -v nu=0.3 >"$T/bar"
+block 4 1 1 0.0025 -v muscle=1 -v E=30 -v nu=0.3 >"$T/bar"
 grep -v '^meta lattice' "$T/bar" >"$T/mesh"
 plain='-q -d cpu --damping 0 --ramp 0 -m tissue.peak=1e5'
 hill="$plain -m tissue.vmax=10"
@@ -92,25 +87,12 @@ hill="$plain -m tissue.vmax=10"
     # ---- The same bytes everywhere.
     for model in bar mesh; do
         for precision in double single; do
-            first=
-            for set in plain AVX2 AVX-512; do
-                for threads in 1 2; do
-                    name="$model, $precision, $set, $threads threads"
-                    SINEW_VECTORS=$set tled-run $hill --text --precision $precision --threads $threads -n 2000 \
-                        --script "$T/load" -c all=.6 <"$T/$model" >"$T/out" 2>"$T/said"
-                    if grep -q SINEW_VECTORS "$T/said"; then
-                        skip 1 "$name: this processor cannot"
-                        continue
-                    fi
-                    sum=$(sed -n '/^frame/,$p' "$T/out" | cksum)
-                    is "$sum" "${first:=$sum}" "$name: the same bytes"
-                done
-            done
+            same_by_sets "1 2" $precision $model --precision $precision -n 2000 --script "$T/load" -c all=.6 $hill
         done
     done
 
     # ---- Energies, and strong muscles at small steps.
-    block -v nx=8 -v ny=3 -v nz=3 -v h=0.005 -v E=3000 -v nu=0.46 -v held=low >"$T/muscle"
+    block 8 3 3 0.005 -v muscle=1 -v E=3000 -v nu=0.46 -v held=low >"$T/muscle"
     for dt in 1e-5 2.5e-6; do
         tled-run -q -d cpu -t 0.08 --dt $dt -c all=1 -g 0,0,-9.81 -m tissue.peak=3e5 -m tissue.passive=.05 -m tissue.vmax=10 \
             --log "$T/log" --log-every .0001 <"$T/muscle" >"$T/out"
@@ -144,15 +126,8 @@ hill="$plain -m tissue.vmax=10"
 }
 
 # ---- What is refused, and kept.
-refuse() { # NAME WANTED ARGS...
-    name=$1
-    wanted=$2
-    shift 2
-    tled-run -q -d cpu -n 1 "$@" <"$T/bar" >"$T/out" 2>"$T/said"
-    is "$? $(cat "$T/said")" "$wanted" "$name"
-}
-refuse "a velocity below 0" "2 tled-run: -m tissue: 'vmax=-1' is not allowed; expected 0 to 1000 1/s" -m tissue.vmax=-1
-refuse "a spring that does not give" "2 tled-run: -m tissue: 'series=0' is not allowed; expected 0.001 to 1" -m tissue.series=0
+refuse_bar "a velocity below 0" "2 tled-run: -m tissue: 'vmax=-1' is not allowed; expected 0 to 1000 1/s" -m tissue.vmax=-1
+refuse_bar "a spring that does not give" "2 tled-run: -m tissue: 'series=0' is not allowed; expected 0.001 to 1" -m tissue.series=0
 tled-run -q -d cpu -n 1 --text -m tissue.vmax=0 <"$T/bar" >"$T/out"
 is "$(grep -c 'material.vmax' "$T/out")" 0 "vmax=0 is as none"
 done_testing

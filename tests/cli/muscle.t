@@ -4,34 +4,17 @@
 # elements; files of materials, and what is refused.
 # shellcheck source=tests/cli/lib.sh
 . "$(dirname "$0")/lib.sh"
+# shellcheck source=tests/cli/tissue.sh
+. tests/cli/tissue.sh
 
-# block ARGS...: a block with the corner at the origin, of one muscle with fibres along x.
-block() {
-    awk -v muscle=1 "$@" -f tests/cli/block.awk
-}
-planes='0 displace -1,-1,-1,0,1,1 0,-,-
-0 displace -1,-1,-1,1,0,1 -,0,-
-0 displace -1,-1,-1,1,1,0 -,-,0'
-# bar PRESSURE: a script that pulls the end of a bar of 40 x 10 x 10 mm.
-bar() {
-    echo "$planes"
-    echo "0 force 0.04,0.005,0.005 0.008 $(awk -v p="$1" 'BEGIN { printf "%.9g", p * 1e-4 }'),0,0"
-}
-# stretched FILE: of a bar, its length and its side, as shares of those at rest.
-stretched() {
-    sinew info --get node.displacement.at.0.04,0.01,0.01 "$1" | awk '{ printf "%.7f %.7f", 1 + $1 / 0.04, 1 + $2 / 0.01 }'
-}
 # balance FILE: the worst share that a log's balance is of what was done and held.
 balance() {
     awk -F '\t' 'NR > 1 { all = 0; for (i = 5; i <= 13; i++) all = all > $i * $i ? all : $i * $i
         off = off > $14 * $14 ? off : $14 * $14; most = most > all ? most : all } END { print sqrt(off / most) + 0 }' "$1"
 }
-below() { # VALUE LIMIT NAME
-    is "$(awk -v a="$1" -v b="$2" 'BEGIN { print (a < b) }')" 1 "$3: $1"
-}
 
 # mu 5e3, K 2.5e5.
-block -v nx=4 -v ny=1 -v nz=1 -v h=0.01 -v E=14900.6622516556 -v nu=0.490066225165563 >"$T/bar"
+block 4 1 1 0.01 -v muscle=1 -v E=14900.6622516556 -v nu=0.490066225165563 >"$T/bar"
 grep -v '^meta lattice' "$T/bar" >"$T/mesh"
 blemker='-m tissue.passive=.05 -m tissue.peak=3e5'
 
@@ -67,27 +50,14 @@ X
 
     for model in bar mesh; do
         for precision in double single; do
-            first=
-            for set in plain AVX2 AVX-512; do
-                for threads in 1 2; do
-                    name="$model, $precision, $set, $threads threads"
-                    SINEW_VECTORS=$set tled-run -q --text -d cpu --precision $precision --threads $threads -n 2000 \
-                        --script "$T/pull" -c all=.2 $blemker <"$T/$model" >"$T/out" 2>"$T/said"
-                    if grep -q SINEW_VECTORS "$T/said"; then
-                        skip 1 "$name: this processor cannot"
-                        continue
-                    fi
-                    sum=$(sed -n '/^frame/,$p' "$T/out" | cksum)
-                    is "$sum" "${first:=$sum}" "$name: the same bytes"
-                done
-            done
+            same_by_sets "1 2" $precision $model --precision $precision -n 2000 --script "$T/pull" -c all=.2 $blemker
             tled-run -q -d cpu --precision $precision --rest 1e-4 --script "$T/pull" $blemker <"$T/$model" >"$T/out"
             near "$(stretched "$T/out" | cut -d ' ' -f 1)" 1.2 1e-4 "$model, $precision: pulled to 1.2"
         done
     done
 
     # Energies: a muscle that pulls itself up and stretches by its end's weight.
-    block -v nx=8 -v ny=3 -v nz=3 -v h=0.005 -v E=3000 -v nu=0.46 -v held=low >"$T/muscle"
+    block 8 3 3 0.005 -v muscle=1 -v E=3000 -v nu=0.46 -v held=low >"$T/muscle"
     printf '0 force 0.04,0.0075,0.0075 0.02 0,0,0\n.05 force 0.04,0.0075,0.0075 0.02 5,0,0\n' >"$T/stretch"
     tled-run -q -d cpu -t 0.12 --dt 5e-5 -c all=0.3 -g 0,0,-9.81 --script "$T/stretch" $blemker --log "$T/log" \
         --log-every .0001 --results all <"$T/muscle" >"$T/out"
@@ -133,23 +103,16 @@ X
 }
 
 # ---- What is refused, and kept.
-refuse() { # NAME WANTED ARGS...
-    name=$1
-    wanted=$2
-    shift 2
-    tled-run -q -d cpu -n 1 "$@" <"$T/bar" >"$T/out" 2>"$T/said"
-    is "$? $(cat "$T/said")" "$wanted" "$name"
-}
-refuse "a share of no peak" \
+refuse_bar "a share of no peak" \
     "1 tled-run: material 'tissue' has passive=0.05, a share of the peak stress, but no peak stress; expected peak=PASCAL" \
     -m tissue.passive=.05 -m tissue.peak=0
-refuse "a velocity of no peak" \
+refuse_bar "a velocity of no peak" \
     "1 tled-run: material 'tissue' has vmax=10, the velocity of its muscles, but no peak stress; expected peak=PASCAL" \
     -m tissue.vmax=10 -m tissue.peak=0
-refuse "an optimum out of range" "2 tled-run: -m tissue: 'optimum=3' is not allowed; expected 0.5 to 2" -m tissue.optimum=3
-refuse "a passive stress below 0" "2 tled-run: -m tissue: 'passive=-1' is not allowed; expected 0 to 10" -m tissue.passive=-1
-refuse "an exponent of 0" "2 tled-run: -m tissue: 'stiffening=0' is not allowed; expected 0.1 to 20" -m tissue.stiffening=0
-refuse "straight when short" "2 tled-run: -m tissue: 'straight=.9' is not allowed; expected 1 to 2" -m tissue.straight=.9
+refuse_bar "an optimum out of range" "2 tled-run: -m tissue: 'optimum=3' is not allowed; expected 0.5 to 2" -m tissue.optimum=3
+refuse_bar "a passive stress below 0" "2 tled-run: -m tissue: 'passive=-1' is not allowed; expected 0 to 10" -m tissue.passive=-1
+refuse_bar "an exponent of 0" "2 tled-run: -m tissue: 'stiffening=0' is not allowed; expected 0.1 to 20" -m tissue.stiffening=0
+refuse_bar "straight when short" "2 tled-run: -m tissue: 'straight=.9' is not allowed; expected 1 to 2" -m tissue.straight=.9
 printf 'tissue peak=2e5 passive=.1 optimum=0.9\n' >"$T/materials"
 tled-run -q -d cpu -n 1 --materials "$T/materials" <"$T/bar" >"$T/out"
 is "$(sinew info --get material.passive "$T/out") $(sinew info --get material.optimum "$T/out")" "0.1 0.9" "a file of materials has the keys"

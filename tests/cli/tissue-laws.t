@@ -27,25 +27,6 @@ balanced() {
     is "$(awk -F '\t' 'END { off = $14 / ($8 + $11); print (off < .001 && off > -.001) }' "$1")" 1 "$2: energies balance to 1e-3"
 }
 
-# same_by_sets MODEL PRECISION NAME ARG...: the same bytes by each instruction set.
-same_by_sets() {
-    model=$1
-    precision=$2
-    what=$3
-    shift 3
-    first=
-    for set in plain AVX2 AVX-512; do
-        SINEW_VECTORS=$set tled-run -q --text -d cpu --precision "$precision" -n 20 "$@" <"$T/$model" >"$T/out" 2>"$T/said"
-        if grep -q SINEW_VECTORS "$T/said"; then
-            skip 1 "$what, $set: this processor cannot"
-            continue
-        fi
-        sum=$(sed -n '/^frame/,$p' "$T/out" | cksum)
-        grep -q '^frame' "$T/out" || sum="$set has none"
-        is "$sum" "${first:=$sum}" "$what, $model, $precision, $set: the same bytes"
-    done
-}
-
 # LAW-AND-KEYS|P(1.2)|side there|P(.8)
 while IFS='|' read -r law far side near; do
     # shellcheck disable=SC2046,SC2086 # options of a material are words
@@ -68,7 +49,7 @@ while IFS='|' read -r law far side near; do
         # The same bytes by each instruction set.
         for precision in double single; do
             for model in muscle muscle_mesh; do
-                same_by_sets $model $precision "$name" -c all=0.5 -g 9,2,-9.81 $tissue
+                same_by_sets 2 "$name, $precision" $model --precision $precision -n 20 -c all=0.5 -g 9,2,-9.81 $tissue
             done
         done
     }
@@ -99,7 +80,7 @@ tled-run -q -d cpu --dt 2e-5 -t 0.05 --damping 0 -g 30,0,-30 --log "$T/log" <"$T
 balanced "$T/log" "three laws"
 near "$(sinew info --get quality.hourglass "$T/out")" "$(awk -F '\t' 'END { print $NF }' "$T/log")" 1e-6 "and sinew info has the energies of the log"
 for precision in double single; do
-    same_by_sets mixed $precision "three laws" -g 30,9,-30
+    same_by_sets 2 "three laws, $precision" mixed --precision $precision -n 20 -g 30,9,-30
 done
 
 # Cubes of 1 m, K 2000, stretched by 1.5 as CalculiX stretches them, by so much force. Of another volumetric energy the

@@ -1,9 +1,11 @@
 # shellcheck shell=sh
-# Blocks of tissue that are pulled, for the tests of laws in tled-run and CalculiX.
+# Blocks of tissue that are pulled, for the tests of laws and muscles in tled-run and CalculiX.
 
 # block NX NY NZ H ARGS...: a block with the corner at the origin.
 block() {
-    awk -v nx="$1" -v ny="$2" -v nz="$3" -v h="$4" -f tests/cli/block.awk
+    nx=$1 ny=$2 nz=$3 h=$4
+    shift 4
+    awk -v nx="$nx" -v ny="$ny" -v nz="$nz" -v h="$h" "$@" -f tests/cli/block.awk
 }
 # of LAW KEY=VALUE...: options for such tissue.
 of() {
@@ -25,6 +27,38 @@ bar() {
 # stretched FILE: of a bar, its length and its side, as shares of those at rest.
 stretched() {
     sinew info --get node.displacement.at.0.04,0.01,0.01 "$1" | awk '{ printf "%.7f %.7f", 1 + $1 / 0.04, 1 + $2 / 0.01 }'
+}
+# same_by_sets THREADS NAME MODEL ARG...: tled-run of $T/MODEL writes the same bytes by each instruction set, on each number of
+# threads. The last of them stays in $T/same.
+same_by_sets() {
+    numbers=$1 what=$2 model=$3
+    shift 3
+    first=
+    for set in plain AVX2 AVX-512; do
+        for threads in $numbers; do
+            name="$what, $model, $set, $threads threads"
+            SINEW_VECTORS=$set tled-run -q --text -d cpu --threads "$threads" "$@" <"$T/$model" >"$T/by" 2>"$T/said"
+            if grep -q SINEW_VECTORS "$T/said"; then
+                skip 1 "$name: this processor cannot"
+                continue
+            fi
+            mv "$T/by" "$T/same"
+            sum=$(sed -n '/^frame/,$p' "$T/same" | cksum)
+            grep -q '^frame' "$T/same" || sum="$name has none"
+            is "$sum" "${first:=$sum}" "$name: the same bytes"
+        done
+    done
+}
+# refuse_bar NAME WANTED ARG...: tled-run of $T/bar ends with this status and says this.
+refuse_bar() {
+    name=$1 wanted=$2
+    shift 2
+    tled-run -q -d cpu -n 1 "$@" <"$T/bar" >"$T/out" 2>"$T/said"
+    is "$? $(cat "$T/said")" "$wanted" "$name"
+}
+# below VALUE LIMIT NAME
+below() {
+    is "$(awk -v a="$1" -v b="$2" 'BEGIN { print (a < b) }')" 1 "$3: $1"
 }
 # calculix HYPERELASTIC CONSTANTS STRETCH: the force (N) that pulls a cube of 1 m so far, by one C3D8 of CalculiX.
 calculix() {

@@ -3,14 +3,6 @@
 . "$(dirname "$0")/lib.sh"
 . tests/cli/boxes.sh
 
-# vox ARGS...: as text into $T/m.
-vox() {
-    voxelise -q --text --unit mm "$@" >"$T/m" 2>"$T/said"
-}
-# rows ARRAY: of $T/m, a line each.
-rows() {
-    awk -v a="$1" '$1 == "array" { on = $2 == a; next } /^[a-z]/ { on = 0 } on' "$T/m"
-}
 # total: of the shares.
 total() {
     rows element.fraction | awk '{ sum += $1 } END { printf "%.9g", sum }'
