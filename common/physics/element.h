@@ -48,8 +48,8 @@ typedef struct element_fibre {
     muscle_series series;
 } element_fibre;
 
-/* What of a fibre is looked at: nothing; its active stress, with the curves at 0; the curves; all. To steppers mostly a
- * constant. */
+/* How much of a muscle a function computes: nothing; its active stress, with the curves at 0; the curves too; the
+ * spring in series too. For steppers this is mostly a constant. */
 enum { ELEMENT_NO_MUSCLE, ELEMENT_MUSCLE, ELEMENT_CURVED_MUSCLE, ELEMENT_SERIAL_MUSCLE };
 
 /* The modes of one component: sums and differences along x, then y, then z. */

@@ -18,9 +18,9 @@ typedef struct step_matrix {
 
 /* Of a muscle's stress: with m = F a0, l = |m| and t(l) = sigma(l)/l (muscle_curves.h), P = t m (x) a0, so
  *     A = t I (x) a0 a0 + (t'/l) (m (x) a0) (x) (m (x) a0).
- * Of one in series with a spring the matrix is no less than A, whatever the contractile element has of the length:
- * along the fibre it has the spring's stiffness even if it is slack, and across it the most that the spring can pull
- * with (muscle_series.h). */
+ * The matrix of a muscle in series with a spring is no less than A, whatever part of the length its contractile element
+ * has: along the fibre it has the spring's stiffness, even where the spring is slack, and across the fibre the largest
+ * tension of the spring (muscle_series.h). */
 typedef struct stability_muscle {
     element_vector now; /* m */
     double t, slope;    /* slope: t'/l */

@@ -177,7 +177,7 @@ static void test_forces(const tled_executor *device, double tolerance)
     bench_free(&b);
 }
 
-/* What of a state there is, saved and restored, gives the same bytes again. */
+/* A state that is saved and restored gives the same bytes again, with contractile elements too. */
 static void test_restored(const tled_executor *device)
 {
     bench b;

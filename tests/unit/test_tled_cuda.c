@@ -154,7 +154,8 @@ static void test_slits_marched(const tled_executor *cuda)
     in_slit = NULL;
 }
 
-/* As it is now, in any form: a muscle, cut elements, and slits with tips. few: whether a few elements march too. */
+/* The march of the form and the fibres that are set: without a muscle, with one, of cut elements, and of slits with
+ * tips. */
 static void test_marched_as(const tled_executor *cuda, const char *name)
 {
     block plain = small, few = small, cut = large;
