@@ -104,10 +104,11 @@ static __device__ __forceinline__ void mode_forces(const float inverse[3][3], co
     }
 }
 
-/* Forces on the modes of a cell: of its faces' xy, whose sum and difference are its modes xy and xyz, of yz and zx. */
-typedef struct mode_force {
+/* Of the modes of a cell, of its faces' xy, whose sum and difference are its modes xy and xyz, of yz and zx: forces, or
+ * strains, or stresses. */
+typedef struct modes {
     float low[3], high[3], yz[3], zx[3];
-} mode_force;
+} modes;
 
 /* k.own; of a cube it is 1 times the torsion. */
 template <march_control K> static __device__ __forceinline__ float own_of(const march_hold &k, int i)
@@ -121,84 +122,77 @@ template <bool PLAIN> static __device__ __forceinline__ float bending_of(const m
     return PLAIN ? 1 : k.bending;
 }
 
-/* *work: twice the energy of the modes. */
+/* Strains e and stresses s of the modes. */
 template <march_control K, bool PLAIN>
-static __device__ __forceinline__ void hold_modes(const march_hold &k, const float inverse[3][3], const face &low,
-                                                  const face &high, mode_force *f, float *work, float p[3][3])
+static __device__ __forceinline__ void stress_modes(const march_hold &k, const float inverse[3][3], const face &low,
+                                                    const face &high, modes *e, modes *s)
 {
-    float yz[3], zx[3], e_low[3], e_high[3], e_yz[3], e_zx[3], xy[3], s_low[3], s_high[3], s_yz[3], s_zx[3];
+    float yz[3], zx[3], xy[3];
 #pragma unroll
     for (int a = 0; a < 3; a++) {
         yz[a] = high.y[a] - low.y[a];
         zx[a] = high.x[a] - low.x[a];
     }
-    strains_of(inverse, low.xy, e_low);
-    strains_of(inverse, high.xy, e_high);
-    strains_of(inverse, yz, e_yz);
-    strains_of(inverse, zx, e_zx);
+    strains_of(inverse, low.xy, e->low);
+    strains_of(inverse, high.xy, e->high);
+    strains_of(inverse, yz, e->yz);
+    strains_of(inverse, zx, e->zx);
 #pragma unroll
     for (int i = 0; i < 3; i++)
-        xy[i] = e_low[i] + e_high[i];
-    const float bending = bending_of<PLAIN>(k), twist = k.torsion * (e_yz[0] + e_zx[1] + xy[2]);
-    const float s_xy[3] = {bending * xy[0] + k.coupling * e_yz[2], bending * xy[1] + k.coupling * e_zx[2],
+        xy[i] = e->low[i] + e->high[i];
+    const float bending = bending_of<PLAIN>(k), twist = k.torsion * (e->yz[0] + e->zx[1] + xy[2]);
+    const float s_xy[3] = {bending * xy[0] + k.coupling * e->yz[2], bending * xy[1] + k.coupling * e->zx[2],
                            own_of<K>(k, 2) * xy[2] + twist};
-    s_yz[0] = own_of<K>(k, 0) * e_yz[0] + twist;
-    s_yz[1] = bending * e_yz[1] + k.coupling * e_zx[0];
-    s_yz[2] = bending * e_yz[2] + k.coupling * xy[0];
-    s_zx[0] = bending * e_zx[0] + k.coupling * e_yz[1];
-    s_zx[1] = own_of<K>(k, 1) * e_zx[1] + twist;
-    s_zx[2] = bending * e_zx[2] + k.coupling * xy[1];
+    s->yz[0] = own_of<K>(k, 0) * e->yz[0] + twist;
+    s->yz[1] = bending * e->yz[1] + k.coupling * e->zx[0];
+    s->yz[2] = bending * e->yz[2] + k.coupling * xy[0];
+    s->zx[0] = bending * e->zx[0] + k.coupling * e->yz[1];
+    s->zx[1] = own_of<K>(k, 1) * e->zx[1] + twist;
+    s->zx[2] = bending * e->zx[2] + k.coupling * xy[1];
 #pragma unroll
     for (int i = 0; i < 3; i++) {
-        const float gap = e_high[i] - e_low[i];
-        s_low[i] = s_xy[i] - k.corner * gap;
-        s_high[i] = s_xy[i] + k.corner * gap;
+        const float gap = e->high[i] - e->low[i];
+        s->low[i] = s_xy[i] - k.corner * gap;
+        s->high[i] = s_xy[i] + k.corner * gap;
     }
-    *work = 0;
-#pragma unroll
-    for (int i = 0; i < 3; i++)
-        *work += s_low[i] * e_low[i] + s_high[i] * e_high[i] + s_yz[i] * e_yz[i] + s_zx[i] * e_zx[i];
-    mode_forces(inverse, s_low, e_low, f->low, p);
-    mode_forces(inverse, s_high, e_high, f->high, p);
-    mode_forces(inverse, s_yz, e_yz, f->yz, p);
-    mode_forces(inverse, s_zx, e_zx, f->zx, p);
 }
 
-/* V P L, and the forces on the modes, of a law that they follow: W = s w0, s = T/T(0), so P has w0 s' dx/dF besides,
- * which is the law's own stress with w0 s'/V more in place of f'. */
-template <march_control K, bool PLAIN>
-static __device__ __forceinline__ void follow(const cuda_march &m, const tissue<K> &of, const stretch &s, bool is,
-                                              const face &low, const face &high, mode_force *f, float p[3][3])
+/* Twice their energy. */
+static __device__ __forceinline__ float work_of(const modes &e, const modes &s)
 {
-    const march_side &side = m.side[0];
-    const bent b = bent_of(m, of.more, s, is);
-    const float j = 1 + s.dilation * side.density;
-    float inverse[3][3], own[3][3], work;
+    float work = 0;
 #pragma unroll
     for (int i = 0; i < 3; i++) {
-#pragma unroll
-        for (int a = 0; a < 3; a++) {
-            own[a][i] = (j * side.width) * s.h[a][i] - (1 + s.third) * s.g[a][i];
-            p[a][i] = 0;
-        }
-        own[i][i] += (s.dilation * side.density - s.third) * side.face;
+        work += s.low[i] * e.low[i];
+        work += s.high[i] * e.high[i];
+        work += s.yz[i] * e.yz[i];
+        work += s.zx[i] * e.zx[i];
     }
-    inverse_of<K>(m, s, inverse);
-    hold_modes<K, PLAIN>(of.hold, inverse, low, high, f, &work, p);
-    const float scale = (b.slope + work * b.slope_of_shear * side.density) * b.scale;
-    const float pressure = is ? of.hold.press * s.dilation * j * m.volume : 0;
+    return work;
+}
+
+/* Forces on them; p gets what it has of them. */
+static __device__ __forceinline__ void force_modes(const float inverse[3][3], const modes &e, const modes &s, modes *f,
+                                                   float p[3][3])
+{
+    mode_forces(inverse, s.low, e.low, f->low, p);
+    mode_forces(inverse, s.high, e.high, f->high, p);
+    mode_forces(inverse, s.yz, e.yz, f->yz, p);
+    mode_forces(inverse, s.zx, e.zx, f->zx, p);
+}
+
+/* V P L, and the forces on the modes, of a law that these follow: their energy is W = t w0 with t = T/T(0), so P has
+ * w0 t' dx/dF besides, which is the law's own stress with w0 t'/V more in place of f'. Leaves t F'^-T, by which
+ * the modes' forces are t times what they are, in `inverse`. */
+template <march_control K>
+static __device__ __forceinline__ void follow(const cuda_march &m, const tissue<K> &of, const stretch &s, bool is,
+                                              float work, float inverse[3][3], float p[3][3])
+{
+    const bent b = bent_of(m, of.more, s);
+    push_of<K>(m, of, (b.slope + work * b.slope_of_shear) * b.scale, s, is, p);
 #pragma unroll
-    for (int i = 0; i < 3; i++)
-#pragma unroll
-        for (int a = 0; a < 3; a++)
-            p[a][i] = scale * own[a][i] + (pressure * inverse[a][i] + b.shear * p[a][i]);
-#pragma unroll
-    for (int a = 0; a < 3; a++) {
-        f->low[a] *= b.shear;
-        f->high[a] *= b.shear;
-        f->yz[a] *= b.shear;
-        f->zx[a] *= b.shear;
-    }
+    for (int i = 0; i < 9; i++)
+        inverse[i / 3][i % 3] *= b.shear;
 }
 
 /* As cell_forces of isotropic control; PLAIN: the cell is. */
@@ -206,17 +200,16 @@ template <march_control K, bool PLAIN>
 static __device__ __forceinline__ void cell_forces(const cuda_march &m, const tissue<K> &of, bool is, const face &low,
                                                    const face &high, face *sum, push<K> *below)
 {
-    float p[3][3];
-    mode_force f;
+    float inverse[3][3], p[3][3];
+    modes strains, stresses, f;
     const stretch s = stretch_of<K>(m, is, low, high);
-    if constexpr (march_kind<K>::FORM == FORM_FIRST) {
-        follow<K, PLAIN>(m, of, s, is, low, high, &f, p);
-    } else {
-        float inverse[3][3], work;
+    inverse_of<K>(m, s, inverse);
+    stress_modes<K, PLAIN>(of.hold, inverse, low, high, &strains, &stresses);
+    if constexpr (march_kind<K>::FORM == FORM_FIRST)
+        follow<K>(m, of, s, is, work_of(strains, stresses), inverse, p);
+    else
         push_of<K>(m, of, scale_of(of.hold, s), s, is, p);
-        inverse_of<K>(m, s, inverse);
-        hold_modes<K, PLAIN>(of.hold, inverse, low, high, &f, &work, p);
-    }
+    force_modes(inverse, strains, stresses, &f, p);
 #pragma unroll
     for (int a = 0; a < 3; a++) {
         sum->mean[a] = below->mean[a] - p[a][2];

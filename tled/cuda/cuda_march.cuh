@@ -35,8 +35,8 @@ typedef struct march_side {
 } march_side;
 
 /* Of laws beside the neo-Hookean, under physical control, times MARCH_LAW in the march's unit of force where they are
- * moduli. Form `first`: 2 f'(x) = sum of slope[k] x^k; T/T(0) = 1 + sum of shear[k] x^(k + 1), and its slope, sum of
- * rise[k] x^k (form_shear.h). Mooney-Rivlin: slope[0] = 2 c01. */
+ * moduli. Form `first`, with y = x/3: 2 f'(x) = sum of slope[k] y^k; T/T(0) = 1 + sum of shear[k] y^(k + 1), and its
+ * slope, d/dx, over V', sum of rise[k] y^k (form_shear.h). Mooney-Rivlin: slope[0] = 2 c01. */
 enum { MARCH_POWERS = 5 };
 typedef struct march_more {
     float slope[MARCH_POWERS], shear[MARCH_POWERS - 1], rise[MARCH_POWERS - 1];

@@ -125,7 +125,7 @@ static __device__ __forceinline__ stretch stretch_of(const cuda_march &m, bool i
 /* What a law of the form `first` has at a cell's x = I1bar - 3, of which hourglass control has to know (element.h). */
 typedef struct bent {
     float scale;                        /* J^-5/3; no cell: 0 */
-    float slope, shear, slope_of_shear; /* 2 f'(x); T/T(0); its slope */
+    float slope, shear, slope_of_shear; /* 2 f'(x); T/T(0); its slope, over V' */
 } bent;
 
 /* Powers from k on. */
@@ -138,20 +138,19 @@ template <int COUNT> static __device__ __forceinline__ float series(const float 
     return sum;
 }
 
-/* No cell: at rest, as powers of what is large have none. */
-static __device__ __forceinline__ bent bent_of(const cuda_march &m, const march_more &c, const stretch &s, bool is)
+/* By y = x/3. No cell: y is -1, so that all is finite. */
+static __device__ __forceinline__ bent bent_of(const cuda_march &m, const march_more &c, const stretch &s)
 {
     bent b;
-    const float root = near_exp2(near_log2(s.j) * (-2.f / 3));
-    const float x = is ? 3 * (root * s.third + (root - 1)) : 0;
+    const float root = near_exp2(near_log2(s.j) * (-2.f / 3)), y = root * s.third + (root - 1);
     b.scale = root * near_inverse(s.j);
-    b.slope = series<2>(c.slope, x);
-    b.shear = 1 + x * c.shear[0];
+    b.slope = series<2>(c.slope, y);
+    b.shear = 1 + y * c.shear[0];
     b.slope_of_shear = c.rise[0];
     if (m.curved) {
-        b.slope += x * x * series<MARCH_POWERS - 2>(c.slope + 2, x);
-        b.shear += x * x * series<MARCH_POWERS - 2>(c.shear + 1, x);
-        b.slope_of_shear += x * series<MARCH_POWERS - 2>(c.rise + 1, x);
+        b.slope += y * y * series<MARCH_POWERS - 2>(c.slope + 2, y);
+        b.shear += y * y * series<MARCH_POWERS - 2>(c.shear + 1, y);
+        b.slope_of_shear += y * series<MARCH_POWERS - 2>(c.rise + 1, y);
     }
     return b;
 }
@@ -359,13 +358,14 @@ static __device__ __forceinline__ march_more more_of(const cuda_march &m, float 
 {
     const float inverse = near_inverse(fmaxf(mu, 1e-30f)), slope[MARCH_POWERS] = {mu, c[0], c[1], c[2], c[3]};
     march_more to;
+    float three = 1;
 #pragma unroll
-    for (int k = 0; k < MARCH_POWERS; k++)
-        to.slope[k] = m.weight * slope[k];
-#pragma unroll
-    for (int k = 1; k < MARCH_POWERS; k++) {
-        to.shear[k - 1] = (2 * k + 1) * slope[k] * inverse;
-        to.rise[k - 1] = k * to.shear[k - 1];
+    for (int k = 0; k < MARCH_POWERS; three *= 3, k++) {
+        to.slope[k] = m.weight * three * slope[k];
+        if (k == 0)
+            continue;
+        to.shear[k - 1] = (2 * k + 1) * three * slope[k] * inverse;
+        to.rise[k - 1] = k * (1.f / 3) * m.side[0].density * to.shear[k - 1];
     }
     return to;
 }

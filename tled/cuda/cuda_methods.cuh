@@ -279,11 +279,14 @@ static double more_plain(const tled_problem *p, const tled_law *law, double weig
         to->slope[0] = (float)(2 * weight * law->c[1]);
         return 2 * law->c[0];
     }
-    for (int k = 0; p->form == FORM_FIRST && k < MARCH_POWERS; k++)
-        to->slope[k] = (float)(2 * (k + 1) * weight * law->c[k]);
-    for (int k = 1; p->form == FORM_FIRST && k < MARCH_POWERS; k++) {
-        to->shear[k - 1] = (float)((k + 1) * (2 * k + 1) * law->c[k] / law->c[0]);
-        to->rise[k - 1] = (float)(k * (k + 1) * (2 * k + 1) * law->c[k] / law->c[0]);
+    double three = 1, density = 1 / (64 * p->side[0] * p->side[1] * p->side[2]);
+    for (int k = 0; p->form == FORM_FIRST && k < MARCH_POWERS; three *= 3, k++) {
+        to->slope[k] = (float)(2 * (k + 1) * weight * law->c[k] * three);
+        if (k == 0)
+            continue;
+        const double shear = (k + 1) * (2 * k + 1) * law->c[k] / law->c[0] * three;
+        to->shear[k - 1] = (float)shear;
+        to->rise[k - 1] = (float)(k * shear / 3 * density);
     }
     return law->mu;
 }
