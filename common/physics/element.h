@@ -240,19 +240,30 @@ ELEMENT_FUNCTION int element_follows(form f, hourglass_kind kind)
 }
 
 /* The numbers that hold modes become those at H, s times those at rest. Returns s'/s. */
-ELEMENT_FUNCTION real element_follow(form f, element_tensor h, element_law *law)
+ELEMENT_FUNCTION real element_follow_numbers(form f, element_tensor h, element_law *law)
 {
     const form_shear t = form_sheared(f, form_first_x(h), law->c);
-    const real s = t.now / t.rest;
+    const real by = 1 / (t.now * t.rest), s = t.now * t.now * by;
     for (int i = 0; i < HOURGLASS_NUMBERS; i++)
         law->hourglass[i] = law->hourglass[i] * s;
-    return t.slope / t.now;
+    return t.slope * t.rest * by;
 }
 
-/* P has W s'/(s V) dx/dF besides: f' becomes so much more. by: s'/(s V), 1/m3. */
-ELEMENT_FUNCTION void element_followed(const hourglass_modes *f, const hourglass_modes *m, real by, element_law *law)
+/* P has W s'/(s V) dx/dF besides: f' becomes so much more. work: 2 W (J); by: s'/(s V), 1/m3. */
+ELEMENT_FUNCTION void element_followed(real work, real by, element_law *law)
 {
-    form_first_add(law->c, R(.5) * hourglass_dot(f, m) * by);
+    form_first_add(law->c, R(.5) * work * by);
+}
+
+/* The law of an element that control follows becomes that at H: P, and what holds the modes, are to be found by it.
+ * Other laws stay. */
+ELEMENT_FUNCTION void element_follow(form f, hourglass_kind kind, hourglass_modes modes, element_tensor h,
+                                     element_shape shape, element_law *law)
+{
+    if (!element_follows(f, kind))
+        return;
+    const real slope = element_follow_numbers(f, h, law);
+    element_followed(hourglass_physical_work(modes, h, shape, law->hourglass), slope * shape.density, law);
 }
 
 /* One component of f_a = V P B_a + sum_g gamma_g f_g; px, py, pz: its row of P; the others: of its hourglass forces. */
@@ -261,19 +272,6 @@ ELEMENT_FUNCTION element_corners element_gather(real px, real py, real pz, eleme
 {
     element_modes f = {px * area.x, py * area.y, pz * area.z, xy, yz, zx, xyz};
     return element_corners_of(f);
-}
-
-/* What holds an element's modes. Where that follows the law, it changes the law: P is to be found after it, and has
- * what that adds. */
-ELEMENT_FUNCTION hourglass_force element_hold(form f, hourglass_kind kind, hourglass_modes modes, element_tensor h,
-                                              element_shape shape, element_law *law)
-{
-    const int follows = element_follows(f, kind);
-    const real slope = follows ? element_follow(f, h, law) : REAL_ZERO;
-    const hourglass_force held = hourglass_of(kind, modes, h, shape, law->hourglass);
-    if (follows)
-        element_followed(&held.f, &modes, slope * shape.density, law);
-    return held;
 }
 
 /* The forces at the corners from P of the tissue and from what holds the modes. */
@@ -289,22 +287,48 @@ ELEMENT_FUNCTION element_field element_force_of(hourglass_kind kind, element_ten
     return force;
 }
 
+/* H of displacements u. */
+ELEMENT_FUNCTION element_tensor element_gradient_to(element_field u, element_vector slope)
+{
+    return element_gradient(element_modes_of(u.x), element_modes_of(u.y), element_modes_of(u.z), slope);
+}
+
+/* As element_follow, of displacements u. */
+ELEMENT_FUNCTION void element_follow_to(form f, hourglass_kind kind, element_field u, element_shape shape,
+                                        element_law *law)
+{
+    const element_modes x = element_modes_of(u.x), y = element_modes_of(u.y), z = element_modes_of(u.z);
+    element_follow(f, kind, element_hourglass_modes(x, y, z), element_gradient(x, y, z, shape.slope), shape, law);
+}
+
+/* The forces at the corners, of displacements u, from P of the tissue and the numbers that hold the modes. */
+ELEMENT_FUNCTION element_field element_force_from(hourglass_kind kind, element_field u, element_tensor p,
+                                                  element_shape shape, const real *hourglass)
+{
+    const element_modes x = element_modes_of(u.x), y = element_modes_of(u.y), z = element_modes_of(u.z);
+    const element_tensor h = element_gradient(x, y, z, shape.slope);
+    const hourglass_force held = hourglass_of(kind, element_hourglass_modes(x, y, z), h, shape, hourglass);
+    return element_force_of(kind, p, &held, shape);
+}
+
+/* As element_force_fibred, by a law that is that at u already (element_follow). */
+ELEMENT_FUNCTION element_field element_force_by(form f, hourglass_kind kind, element_field u, element_shape shape,
+                                                element_law law, element_fibre fibre, int which, element_fibre second,
+                                                int which_second, const fibre_set *sets, int count)
+{
+    const element_tensor p =
+        element_stress(f, element_gradient_to(u, shape.slope), law.c, fibre, which, second, which_second, sets, count);
+    return element_force_from(kind, u, p, shape, law.hourglass);
+}
+
 /* As element_force, with a second fibre, and what resists being stretched of `count` volumes, none to two. */
 ELEMENT_FUNCTION element_field element_force_fibred(form f, hourglass_kind kind, element_field u, element_shape shape,
                                                     element_law law, element_fibre fibre, int which,
                                                     element_fibre second, int which_second, const fibre_set *sets,
                                                     int count)
 {
-    element_modes x = element_modes_of(u.x), y = element_modes_of(u.y), z = element_modes_of(u.z);
-    element_tensor h = element_gradient(x, y, z, shape.slope);
-    const int follows = element_follows(f, kind);
-    element_tensor p = h;
-    if (!follows)
-        p = element_stress(f, h, law.c, fibre, which, second, which_second, sets, count);
-    const hourglass_force held = element_hold(f, kind, element_hourglass_modes(x, y, z), h, shape, &law);
-    if (follows)
-        p = element_stress(f, h, law.c, fibre, which, second, which_second, sets, count);
-    return element_force_of(kind, p, &held, shape);
+    element_follow_to(f, kind, u, shape, &law);
+    return element_force_by(f, kind, u, shape, law, fibre, which, second, which_second, sets, count);
 }
 
 /* As element_force, with a second fibre. */

@@ -123,16 +123,12 @@ ELEMENT_FUNCTION element_field element_any_force_fibred(form f, hourglass_kind k
     element_tensor h = element_any_twist(s, &x, &y, &z);
     const hourglass_modes modes = element_hourglass_modes(x, y, z);
     const int follows = element_follows(f, kind);
-    element_tensor p = h;
-    if (!follows)
-        p = element_stress(f, h, law.c, fibre, which, fibre, ELEMENT_NO_MUSCLE, sets, count);
-    const real slope = follows ? element_follow(f, h, &law) : REAL_ZERO;
+    const real slope = follows ? element_follow_numbers(f, h, &law) : REAL_ZERO;
     const hourglass_force held = element_any_hourglass(kind, modes, h, s, law.hourglass);
     const hourglass_modes *m = &held.f;
-    if (follows) {
-        element_followed(m, &modes, slope / s->volume, &law);
-        p = element_stress(f, h, law.c, fibre, which, fibre, ELEMENT_NO_MUSCLE, sets, count);
-    }
+    if (follows)
+        element_followed(hourglass_dot(m, &modes), slope / s->volume, &law);
+    element_tensor p = element_stress(f, h, law.c, fibre, which, fibre, ELEMENT_NO_MUSCLE, sets, count);
     if (kind == HOURGLASS_PHYSICAL)
         p = element_sum(p, held.p);
     element_field force = {element_any_gather(s, p.xx, p.xy, p.xz, m->xy.x, m->yz.x, m->zx.x, m->xyz.x),

@@ -74,8 +74,10 @@ ELEMENT_FUNCTION element_field element_force_cut(form f, hourglass_kind kind, el
 {
     const element_modes x = element_modes_of(u.x), y = element_modes_of(u.y), z = element_modes_of(u.z);
     const element_tensor h = element_cut_gradient(x, y, z, shape.slope, c);
-    hourglass_force held = element_hold(f, kind, element_hourglass_modes(x, y, z), h, shape, &law);
+    const hourglass_modes modes = element_hourglass_modes(x, y, z);
+    element_follow(f, kind, modes, h, shape, &law);
     element_tensor p = element_stress(f, h, law.c, fibre, which, second, which_second, sets, count);
+    hourglass_force held = hourglass_of(kind, modes, h, shape, law.hourglass);
     if (kind == HOURGLASS_PHYSICAL)
         p = element_sum(p, held.p);
     held.f = element_cut_pull(held.f, p, shape.area, c);

@@ -156,6 +156,15 @@ ELEMENT_FUNCTION hourglass_force hourglass_physical(hourglass_modes m, element_t
     return force;
 }
 
+/* f.m = t.w of it, twice the energy (J). */
+ELEMENT_FUNCTION real hourglass_physical_work(hourglass_modes m, element_tensor h, element_shape s, const real *law)
+{
+    const real inverse = 1 / (1 + element_dilation(h));
+    const hourglass_modes w = hourglass_all_by_columns(element_cofactor(h), m);
+    const hourglass_modes t = hourglass_box(&w, s, law, inverse * inverse);
+    return hourglass_dot(&t, &w);
+}
+
 /* ---- a hexahedron of any shape
  *
  * With g_i = dX/dxi_i at the centre, the columns of J, and r = J^T q (m2), the strain of mode ij linear along j is

@@ -32,6 +32,17 @@ template <class G> static __device__ element_field cell_field(const real *u, con
     return at;
 }
 
+/* The law of a cell that control follows becomes that of its displacements. Returns `place`: what loads the
+ * displacements by it loads them again, as they cost less than the registers that would keep them. */
+template <class G, class L>
+static __device__ int follow(const L &l, const cuda_pass &p, const real *u, const int &place, element_law *law)
+{
+    if (!L::ASKS && !element_follows(l.which, l.control))
+        return place;
+    element_follow_to(l.which, l.control, cell_field<G>(u, place), p.shape, law);
+    return unknown(place);
+}
+
 static __device__ element_vector cell_along(const tile &t, int i, const float *fibre)
 {
     const float *at = fibre + 3 * (int64_t)(t.direction + i);
@@ -67,7 +78,8 @@ static __device__ element_field mixed_force(const L &l, const cuda_view<real> &v
 {
     const cuda_kind &mix = v.kind[mixed.mix];
     const real part = (real)mixed.share, own = share * (1 - part), other = share * part;
-    const element_law law = law_of(l, mixed.c, mixed.hourglass, share);
+    element_law law = law_of(l, mixed.c, mixed.hourglass, share);
+    const int again = follow<G>(l, p, u, place, &law);
     element_fibre fibre = {{0, 0, 0}, 0, {0, 0, 0, 0}}, second = fibre;
     real tension = 0, tension_of_mix = 0;
     if (i < t.fibred) {
@@ -80,8 +92,8 @@ static __device__ element_field mixed_force(const L &l, const cuda_view<real> &v
         second.along = cell_along(t, i, v.mixfibre);
         second.tension = other * tension_of_mix;
     }
-    return element_force_of_two(l.which, l.control, cell_field<G>(u, place), p.shape, law, fibre, tension != 0, second,
-                                tension_of_mix != 0);
+    return element_force_by(l.which, l.control, cell_field<G>(u, again), p.shape, law, fibre, tension != 0, second,
+                            tension_of_mix != 0, NULL, 0);
 }
 
 template <class G, class L>
@@ -89,14 +101,16 @@ static __device__ element_field plain_force(const L &l, const cuda_view<real> &v
                                             int i, const real *u, const int &place, uint32_t volume, real share)
 {
     const real *stiff = p.law + (l.coefficients + l.held) * volume;
-    const element_law law = law_of(l, stiff, stiff + l.coefficients, share);
+    element_law law = law_of(l, stiff, stiff + l.coefficients, share);
+    const int again = follow<G>(l, p, u, place, &law);
     element_fibre fibre = {{0, 0, 0}, 0, {0, 0, 0, 0}};
     if (i < t.fibred) {
         const cuda_kind &kind = v.kind[volume];
         fibre.along = cell_along(t, i, v.fibre);
         fibre.tension = share * (real)(kind.peak * p.now[3 * kind.contract]);
     }
-    return element_force(l.which, l.control, cell_field<G>(u, place), p.shape, law, fibre, fibre.tension != 0);
+    return element_force_by(l.which, l.control, cell_field<G>(u, again), p.shape, law, fibre, fibre.tension != 0, fibre,
+                            ELEMENT_NO_MUSCLE, NULL, 0);
 }
 
 /* What is to be looked at of a volume's muscle: ELEMENT_MUSCLE and so on. */
@@ -190,14 +204,8 @@ static __device__ element_field fibred_force(const L &l, const cuda_view<real> &
     const real *stiff = p.law + (l.coefficients + l.held) * volume;
     element_law law =
         MIXED ? law_of(l, mixed->c, mixed->hourglass, share) : law_of(l, stiff, stiff + l.coefficients, share);
-    const element_field at = cell_field<G>(u, place);
-    const element_modes x = element_modes_of(at.x), y = element_modes_of(at.y), z = element_modes_of(at.z);
-    const element_tensor h = element_gradient(x, y, z, p.shape.slope);
-    const hourglass_modes modes = element_hourglass_modes(x, y, z);
-    const bool first = L::ASKS || element_follows(l.which, l.control); /* it may change the law */
-    hourglass_force held = {};
-    if (first)
-        held = element_hold(l.which, l.control, modes, h, p.shape, &law);
+    const int again = follow<G>(l, p, u, place, &law);
+    const element_tensor h = element_gradient_to(cell_field<G>(u, again), p.shape.slope);
     element_tensor stress = form_stress(l.which, h, law.c);
     if (i < t.fibred) {
         const real part = MIXED ? (real)mixed->share : 0;
@@ -208,9 +216,7 @@ static __device__ element_field fibred_force(const L &l, const cuda_view<real> &
                                         v.mixfamily, v.mixcontractile + cell, share * part);
         add_fibres<MIXED>(v, p, own, other, t.direction + i, h, &stress);
     }
-    if (!first)
-        held = element_hold(l.which, l.control, modes, h, p.shape, &law);
-    return element_force_of(l.control, stress, &held, p.shape);
+    return element_force_from(l.control, cell_field<G>(u, unknown(again)), stress, p.shape, law.hourglass);
 }
 
 /* A cell's forces at its corners. mixed: which of v.mixture it is, or -1. */
