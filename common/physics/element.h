@@ -327,8 +327,17 @@ ELEMENT_FUNCTION element_field element_force_fibred(form f, hourglass_kind kind,
                                                     element_fibre second, int which_second, const fibre_set *sets,
                                                     int count)
 {
-    element_follow_to(f, kind, u, shape, &law);
-    return element_force_by(f, kind, u, shape, law, fibre, which, second, which_second, sets, count);
+    const element_modes x = element_modes_of(u.x), y = element_modes_of(u.y), z = element_modes_of(u.z);
+    const element_tensor h = element_gradient(x, y, z, shape.slope);
+    const hourglass_modes modes = element_hourglass_modes(x, y, z);
+    element_tensor p = h;
+    if (!element_follows(f, kind))
+        p = element_stress(f, h, law.c, fibre, which, second, which_second, sets, count);
+    element_follow(f, kind, modes, h, shape, &law);
+    const hourglass_force held = hourglass_of(kind, modes, h, shape, law.hourglass);
+    if (element_follows(f, kind)) /* what it holds is at hand: faster on a processor */
+        p = element_stress(f, h, law.c, fibre, which, second, which_second, sets, count);
+    return element_force_of(kind, p, &held, shape);
 }
 
 /* As element_force, with a second fibre. */
