@@ -405,8 +405,9 @@ static int make_parts(const inside *test, int64_t number, inside_slab *slab, err
     }
     if (mem_grow(&slab->bits, &slab->capacity, words, sizeof *slab->bits, "cells", e))
         return -1;
-    if (words)
-        memset(slab->bits, 0, (size_t)words * sizeof *slab->bits);
+    if (!words)
+        return 0;
+    memset(slab->bits, 0, (size_t)words * sizeof *slab->bits);
     words = 0;
     for (int64_t i = 0; i < slab->parts; i++) {
         slab->part[i].bits = slab->bits + words;
