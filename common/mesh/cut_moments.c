@@ -21,7 +21,7 @@ int cut_moments_of(cut_moments *to, const model *m, err *e)
     return check_order(to, e);
 }
 
-const float *cut_moments_at(const cut_moments *of, int64_t element)
+int64_t cut_moments_row(const cut_moments *of, int64_t element)
 {
     int64_t low = 0, high = of->count;
     while (low < high) {
@@ -31,5 +31,11 @@ const float *cut_moments_at(const cut_moments *of, int64_t element)
         else
             high = middle;
     }
-    return low < of->count && of->element[low] == element ? of->of + CUT_MOMENTS * low : NULL;
+    return low < of->count && of->element[low] == element ? low : -1;
+}
+
+const float *cut_moments_at(const cut_moments *of, int64_t element)
+{
+    const int64_t row = cut_moments_row(of, element);
+    return row < 0 ? NULL : of->of + CUT_MOMENTS * row;
 }

@@ -18,7 +18,8 @@ typedef struct cut_moments {
 /* -1 with e filled where a model has some that cannot be. */
 int cut_moments_of(cut_moments *to, const model *m, err *e);
 
-/* Those of an element, or NULL. */
+/* The row of an element, or -1; its moments, or NULL. */
+int64_t cut_moments_row(const cut_moments *of, int64_t element);
 const float *cut_moments_at(const cut_moments *of, int64_t element);
 
 #endif

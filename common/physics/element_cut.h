@@ -67,6 +67,16 @@ ELEMENT_FUNCTION hourglass_modes element_cut_pull(hourglass_modes f, element_ten
     return to;
 }
 
+/* As element_force_of, of a part. */
+ELEMENT_FUNCTION element_field element_cut_force_of(hourglass_kind kind, element_tensor p, hourglass_force *held,
+                                                    element_shape shape, element_cut c)
+{
+    if (kind == HOURGLASS_PHYSICAL)
+        p = element_sum(p, held->p);
+    held->f = element_cut_pull(held->f, p, shape.area, c);
+    return element_force_of(HOURGLASS_ISOTROPIC, p, held, shape); /* P has held->p by now */
+}
+
 /* As element_force_fibred, of a part; what is linear in its volume is the law's and the fibres', as share is there. */
 ELEMENT_FUNCTION element_field element_force_cut(form f, hourglass_kind kind, element_field u, element_shape shape,
                                                  element_law law, element_fibre fibre, int which, element_fibre second,
@@ -76,12 +86,9 @@ ELEMENT_FUNCTION element_field element_force_cut(form f, hourglass_kind kind, el
     const element_tensor h = element_cut_gradient(x, y, z, shape.slope, c);
     const hourglass_modes modes = element_hourglass_modes(x, y, z);
     element_follow(f, kind, modes, h, shape, &law);
-    element_tensor p = element_stress(f, h, law.c, fibre, which, second, which_second, sets, count);
+    const element_tensor p = element_stress(f, h, law.c, fibre, which, second, which_second, sets, count);
     hourglass_force held = hourglass_of(kind, modes, h, shape, law.hourglass);
-    if (kind == HOURGLASS_PHYSICAL)
-        p = element_sum(p, held.p);
-    held.f = element_cut_pull(held.f, p, shape.area, c);
-    return element_force_of(HOURGLASS_ISOTROPIC, p, &held, shape); /* P has held.p by now */
+    return element_cut_force_of(kind, p, &held, shape, c);
 }
 
 #ifdef REAL_IS_DOUBLE

@@ -4,9 +4,7 @@
  */
 // needs: tled/cuda/march.c tled/cuda/march_units.c tled/cuda/march_near.c tled/cuda/march_tips.c
 // needs: tled/cuda/march_cells.c tled/cuda/lattice_sheet.c tled/cuda/places.c  tled/*/*.c
-#include "tled/cuda/march.h"
-
-#include "tled_card.h"
+#include "tled_card_runs.h"
 
 #ifdef SINEW_CUDA
 #include "solve/card.h"
@@ -23,119 +21,6 @@ static const slit large_slits = {"slits",
                                   {2, 31, {5, 10}, {60, 70}, false, false},
                                   {1, 20, {0, 50}, {30, 70}, true, true}},
                                  false};
-
-static bool same(const bench *a, const bench *b)
-{
-    return a->time == b->time && a->frames == b->frames &&
-           !memcmp(a->displacement, b->displacement, (size_t)a->problem.nodes * 6 * sizeof *a->displacement);
-}
-
-/* In single precision numbers that are too small to be normal are taken for zero; which of those at the very edge are,
- * a card and a processor may decide differently. */
-static bool same_but_the_smallest(const bench *a, const bench *b)
-{
-    double most = 0;
-    for (int64_t i = 0; i < 6 * a->problem.nodes; i++)
-        most = fmax(most, fabs(a->displacement[i] - b->displacement[i]));
-    return a->time == b->time && a->frames == b->frames && most < 1e-30;
-}
-
-/* The largest difference of a component, as a share of the largest displacement. */
-static double apart(const bench *a, const bench *b)
-{
-    double most = 0;
-    for (int64_t i = 0; i < 3 * a->problem.nodes; i++)
-        most = fmax(most, fabs(a->displacement[i] - b->displacement[i]));
-    return most / b->end.reading.largest;
-}
-
-/* As lump, of so many elements that a card marches in single precision; and boxes, so that its axes differ. */
-static const block marched = {
-    {80, 80, 64}, {.002125, .0009, .001171875}, 30000, .45, 1000, 30000, 0, 1, 0, {0, 0, 0}, 0, false};
-
-/* More curves than bricks that stay keep beside them: so a block of few elements does not stay, and may march. */
-static void add_pushes(bench *b)
-{
-    char text[4096] = "";
-    size_t at = 0;
-    for (int i = 0; i < 40; i++)
-        at += (size_t)snprintf(text + at, sizeof text - at, "0 force .0%02d,.0%02d,.008 .004 1e-4,%de-6,-2e-5\n",
-                               i % 20 + 4, i < 20 ? 10 : 4, 7 * i - 100);
-    read_script(b, text);
-}
-
-static void test_bytes(const block *what, double level, bool scripted, int64_t steps, const tled_executor *cpu,
-                       const tled_executor *cuda, const char *name)
-{
-    bench here, there;
-    make(&here, what, level, scripted, cpu, steps);
-    make(&there, what, level, scripted, cuda, steps);
-    int gone = bench_go(&here) | bench_go(&there);
-    ok(!gone && here.end.reading.largest > 1e-6, "%s: %" PRId64 " steps, %" PRId64 " frames, %.2g mm %s", name, steps,
-       there.frames, 1e3 * here.end.reading.largest, there.e.text);
-    ok(!gone && (cpu == &tled_cpu_double ? same(&here, &there) : same_but_the_smallest(&here, &there)),
-       "%s: the same bytes as the CPU in the same precision", name);
-    bench_free(&here);
-    bench_free(&there);
-}
-
-/* Threads or cells that the card has for each element. */
-static double computed(bench *b, const tled_executor *cuda)
-{
-    tled_state *state = cuda->create(&b->problem, b->setup.threads, &b->e);
-    bench_must(!state, &b->e);
-    const double each = (double)cuda->computed(state) / (double)b->problem.elements;
-    cuda->destroy(state);
-    return each;
-}
-
-/* Whether the card marches: it computes what a march of the same problem does,
- * rounded down. each: what computed() says. */
-static bool is_march(bench *b, double each)
-{
-    const double elements = (double)b->problem.elements;
-    march m;
-    const int failed = march_make(&m, &b->problem, 264, &b->e);
-    const bool is = m.units > 0 && fabs(floor(m.computed * elements) - each * elements) < .5;
-    march_free(&m);
-    bench_must(failed, &b->e);
-    return is;
-}
-
-/* Two runs of the same steps, made: the processor's in double precision, and one that marches: fused
- * operations, and sums in another order. */
-static void compare_marched(bench *here, bench *there, const char *name)
-{
-    const double each = computed(there, there->setup.device);
-    int gone = bench_go(here) | bench_go(there);
-    ok(!gone && here->end.reading.largest > 1e-6 && here->frames == there->frames && apart(there, here) < 1e-5,
-       "%s, marched: after %" PRId64 " steps and %.2g mm, %.2g of the largest displacement off %s", name,
-       here->end.steps, 1e3 * here->end.reading.largest, apart(there, here), there->e.text);
-    ok(is_march(there, each), "%s: it marches, %.3g threads an element", name, each);
-    bench_free(here);
-    bench_free(there);
-}
-
-static void test_marched(const block *what, double level, bool scripted, int64_t steps, const tled_executor *cuda,
-                         const char *name)
-{
-    bench here, there;
-    make(&here, what, level, scripted, &tled_cpu_double, steps);
-    make(&there, what, level, scripted, cuda, steps);
-    compare_marched(&here, &there, name);
-}
-
-/* Few elements, so that tools which watch every access of a card get through it. */
-static void test_marched_small(const block *what, int64_t steps, const tled_executor *cuda, const char *name)
-{
-    bench here, there;
-    const double level = what->fibre[1] > 0 ? .5 : 0;
-    make(&here, what, level, false, &tled_cpu_double, steps);
-    make(&there, what, level, false, cuda, steps);
-    add_pushes(&here);
-    add_pushes(&there);
-    compare_marched(&here, &there, name);
-}
 
 /* Slits where it marches, with and without special cells. */
 static void test_slits_marched(const tled_executor *cuda)
@@ -196,6 +81,33 @@ static void test_laws_marched(const tled_executor *cuda)
     in_fibres = NULL;
 }
 
+/* Elements whose strain is its mean over their part. */
+static void test_cuts_marched(const tled_executor *cuda)
+{
+    block few = small, mixed = large, scripted = marched;
+    few.mixed = mixed.mixed = scripted.mixed = true;
+    in_cuts = true;
+    test_marched_small(&few, 300, cuda, "mean strain, a few mixed elements");
+    test_marched(&large, .2, false, 60, cuda, "mean strain, a muscle");
+    test_marched(&marched, 0, true, 60, cuda, "mean strain, a script");
+    test_marched(&scripted, 0, true, 60, cuda, "mean strain, mixed elements, a script");
+    in_slit = &large_slits;
+    test_marched(&mixed, .5, false, 60, cuda, "mean strain, elements mixed of two muscles, slits");
+    in_slit = NULL;
+    in_form = FORM_MOONEY_RIVLIN;
+    test_marched_as(cuda, "mean strain, mooney-rivlin");
+    in_form = FORM_FIRST;
+    test_marched_as(cuda, "mean strain, first");
+    in_form = FORM_NEO_HOOKEAN;
+    in_fibres = &hgo_fibres;
+    test_marched_as(cuda, "mean strain, hgo fibres");
+    in_fibres = &two_families;
+    test_marched_as(cuda, "mean strain, two families");
+    in_fibres = NULL;
+    test_look(&large, false, 60, cuda, "mean strain, single, many bricks", 1e-6);
+    in_cuts = false;
+}
+
 static void test_all_marched(const tled_executor *cuda)
 {
     bench b;
@@ -226,6 +138,7 @@ static void test_all_marched(const tled_executor *cuda)
     test_marched(&cut, 0, true, 60, cuda, "mixed elements, a script");
     test_slits_marched(cuda);
     test_laws_marched(cuda);
+    test_cuts_marched(cuda);
 }
 
 /* Other forms, on the card, where none marches. */
@@ -298,6 +211,60 @@ static void test_fibres_looks(const tled_executor *twice, const tled_executor *o
     test_look(&middle, false, 300, twice, "double, two families, more bricks", 1e-10);
     in_fibres = NULL;
     in_bent = false;
+}
+
+/* Elements whose strain is its mean over their part: the CPU's bytes in bricks, small and many, of the form that has
+ * kernels of its own for them, of others, with fibres, under isotropic control and where slits are. */
+static void test_cuts_bytes(const tled_executor *cpu, const tled_executor *cuda, const char *name)
+{
+    char what[120];
+    block mixed = muscle, scripted = lump;
+    mixed.mixed = scripted.mixed = true;
+    in_cuts = true;
+    snprintf(what, sizeof what, "%s, mean strain, a script", name);
+    test_bytes(&lump, 0, true, 1000, cpu, cuda, what);
+    snprintf(what, sizeof what, "%s, mean strain, mixed muscles", name);
+    test_bytes(&mixed, .5, false, 1000, cpu, cuda, what);
+    snprintf(what, sizeof what, "%s, mean strain, more bricks", name);
+    test_bytes(&middle, .2, false, 60, cpu, cuda, what);
+    snprintf(what, sizeof what, "%s, mean strain, many bricks", name);
+    if (cpu == &tled_cpu_double)
+        test_bytes(&large, .2, false, 20, cpu, cuda, what);
+    in_slit = &slits[5];
+    snprintf(what, sizeof what, "%s, mean strain, slits, a script", name);
+    test_bytes(&scripted, 0, true, 1000, cpu, cuda, what);
+    in_slit = NULL;
+    in_form = FORM_FIRST;
+    snprintf(what, sizeof what, "%s, mean strain of another form, a script", name);
+    test_bytes(&scripted, 0, true, 1000, cpu, cuda, what);
+    in_form = FORM_NEO_HOOKEAN;
+    in_control = ISOTROPIC(.0075);
+    snprintf(what, sizeof what, "%s, mean strain, isotropic, a script", name);
+    test_bytes(&scripted, 0, true, 1000, cpu, cuda, what);
+    in_control = PHYSICAL;
+    in_fibres = &all_fibres;
+    snprintf(what, sizeof what, "%s, mean strain, mixed muscles with fibres", name);
+    test_bytes(&mixed, .5, false, 1000, cpu, cuda, what);
+    in_fibres = &serial_fibres;
+    snprintf(what, sizeof what, "%s, mean strain, mixed muscles with springs", name);
+    test_bytes(&mixed, .5, false, 1000, cpu, cuda, what);
+    in_fibres = NULL;
+    in_cuts = false;
+}
+
+static void test_cuts_looks(const tled_executor *twice, const tled_executor *once)
+{
+    block mixed = muscle;
+    mixed.mixed = true;
+    in_cuts = in_bent = true;
+    test_look(&lump, true, 300, twice, "double, mean strain, a script", 1e-10);
+    test_look(&middle, false, 300, once, "single, mean strain, more bricks", 1e-6);
+    in_fibres = &all_fibres;
+    test_look(&mixed, false, 300, twice, "double, mean strain, mixed muscles with fibres", 1e-10);
+    in_fibres = NULL;
+    ok(bench_look_at_rest(&lump, once) == 1 && bench_look_at_rest(&lump, twice) == 1,
+       "a look at rest finds the stable step of cut elements there");
+    in_cuts = in_bent = false;
 }
 
 /* Slits: the CPU's bytes in bricks, small and many. */
@@ -511,6 +478,9 @@ int main(void)
     test_fibres_bytes(&tled_cpu_double, twice, "double");
     test_fibres_bytes(&tled_cpu_single, once, "single");
     test_fibres_looks(twice, once);
+    test_cuts_bytes(&tled_cpu_double, twice, "double");
+    test_cuts_bytes(&tled_cpu_single, once, "single");
+    test_cuts_looks(twice, once);
     test_all_marched(once);
     test_isotropic(twice, once);
     test_long(twice, "double");

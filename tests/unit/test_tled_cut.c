@@ -6,7 +6,7 @@
 // needs: tled/cuda/tiles.c tled/cuda/tile_split.c
 // needs: tled/cuda/lattice_sheet.c tled/cuda/places.c  tled/*/*.c
 #include "mesh/lattice.h"
-#include "physics/element.h"
+#include "physics/element_cut.h"
 #include "tled/cpu/cpu.h"
 #include "tled/cpu/rows.h"
 #include "tled/cuda/tiles.h"
@@ -40,8 +40,11 @@ static void force_of(const tled_problem *p, int64_t element, double u[8][3], dou
                   second = {{c2[0], c2[1], c2[2]}, other * (.3 * w->peak), {0, 0, 0, 0}, {0, 0}};
     for (int c = 0; c < 8; c++)
         at.x.at[c] = u[c][0], at.y.at[c] = u[c][1], at.z.at[c] = u[c][2];
-    g = element_force_of_two(p->form, p->control.kind, at, element_box(p->side[0], p->side[1], p->side[2]), law, fibre,
-                             1, second, w != v);
+    const element_shape box = element_box(p->side[0], p->side[1], p->side[2]);
+    const float *moments = tled_cut(p, element);
+    g = moments ? element_force_cut(p->form, p->control.kind, at, box, law, fibre, 1, second, w != v, NULL, 0,
+                                    element_cut_of(moments))
+                : element_force_of_two(p->form, p->control.kind, at, box, law, fibre, 1, second, w != v);
     for (int c = 0; c < 8; c++)
         f[c][0] = g.x.at[c], f[c][1] = g.y.at[c], f[c][2] = g.z.at[c];
 }
@@ -152,6 +155,7 @@ static bool by_tiles(const tled_problem *p, const tiles *t, double *sum, int *ow
             owned[element] += (int)(cell >> TILE_OWN & 1);
             good &= (int32_t)(cell >> TILE_VOLUME) == p->element_volume[element];
             good &= t->share ? t->share[own->cell + k] == p->fraction[element] : !p->fraction;
+            good &= t->cut ? t->cut[own->cell + k] == cut_moments_row(&p->cut, element) : !p->cut.count;
             good &= t->mixed ? t->mixed[own->cell + k] == p->mixed[element] : !p->mix;
             good &= k >= own->fibred || !t->mixfibre ||
                     !memcmp(t->mixfibre + 3 * (own->direction + k), p->mixfibre + 3 * element, 12);
@@ -430,6 +434,9 @@ int main(void)
     test_block(&lump, "whole elements");
     test_block(&cut, "cut elements");
     test_block(&mixed, "elements mixed of two muscles");
+    in_cuts = true;
+    test_block(&mixed, "elements of parts, mixed of two muscles");
+    in_cuts = false;
     test_slit(false);
     test_slit(true);
     test_slits();

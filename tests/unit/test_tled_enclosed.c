@@ -352,7 +352,7 @@ static void test_choice(void)
            !strcmp(e.text, "the CUDA back end has no mean strain of cut elements; expected -d cpu or auto"),
        "%s", e.text);
     ok(executor_choose(table, "auto", &need, says, sizeof says, &e) == &tled_cpu_double.is &&
-           !strcmp(says, "cpu (the one with mean strain of cut elements)"),
+           !strcmp(says, "cpu (cuda: no mean strain of cut elements)"),
        "%s", says);
     end(&s);
 }

@@ -94,6 +94,21 @@ static bool has_muscle(const seen *s, const march_cell *cell, int *at, const flo
     return good;
 }
 
+/* Whether what a special cell has of moments, the number of which is `number`, is its element's: numbers below those of
+ * others are cut cells'. */
+static bool has_cut(const seen *s, int32_t number, int32_t element)
+{
+    static const int product[3][3] = {{0, 3, 5}, {3, 0, 4}, {5, 4, 0}}; /* of two axes: its column */
+    const float *moments = tled_cut(s->p, element);
+    const int32_t *x = s->m->axis;
+    if (!moments || number >= s->m->cuts)
+        return !moments && number >= s->m->cuts;
+    const march_cut *c = &s->m->cut[number];
+    return c->x == moments[x[0]] && c->y == moments[x[1]] && c->z == moments[x[2]] &&
+           c->xy == moments[product[x[0]][x[1]]] && c->yz == moments[product[x[1]][x[2]]] &&
+           c->zx == moments[product[x[2]][x[0]]];
+}
+
 static void see_special(seen *s, int64_t layer, int i, int j, int32_t element)
 {
     const tled_problem *p = s->p;
@@ -104,6 +119,7 @@ static void see_special(seen *s, int64_t layer, int i, int j, int32_t element)
     const int32_t mix = tled_mix(p, element);
     int muscles = 0;
     s->special++;
+    s->wrong += !has_cut(s, (int32_t)(cell - s->m->cell), element);
     s->wrong +=
         cell->mu != (float)(share * law.mu) || cell->bulk != (float)(share * law.bulk) ||
         cell->second != (p->control.kind == HOURGLASS_ISOTROPIC ? (float)(share * law.hourglass[HOURGLASS_K]) : 0);
@@ -125,7 +141,7 @@ static bool is_plain(const seen *s, int32_t element)
     const tled_law law = tled_law_of(p, element);
     const tled_law *plain = &p->volume[s->m->plain].law;
     const int32_t mix = tled_mix(p, element);
-    return tled_fraction(p, element) == 1 && (float)law.mu == (float)plain->mu &&
+    return tled_fraction(p, element) == 1 && !tled_cut(p, element) && (float)law.mu == (float)plain->mu &&
            (float)law.bulk == (float)plain->bulk &&
            (float)law.hourglass[HOURGLASS_K] == (float)plain->hourglass[HOURGLASS_K] &&
            !(p->fibre && p->volume[p->element_volume[element]].contract >= 0) &&
@@ -169,7 +185,7 @@ static void see_tips(seen *s, const march_unit *u)
                 continue;
             s->elements[node]++;
             s->wrong += corner >= 8 * s->p->elements || s->node[tip->node[tip->corner]] != node;
-            s->wrong += !tip->special && !is_plain(s, corner / 8);
+            s->wrong += tip->special ? !has_cut(s, tip->special - 1, corner / 8) : !is_plain(s, corner / 8);
             for (int c = 0; c < 8; c++) {
                 const int way[3] = {c & 1, c >> 1 & 1, c >> 2};
                 s->wrong +=
@@ -301,8 +317,8 @@ static void test_cut(const block *what, const int axis[3], const char *contract,
     ok(cut.units > 0 && !memcmp(cut.axis, axis, sizeof cut.axis) && all_seen(&s),
        "%s: rows along %c, across %c, %lld units, %.3g threads an element: each node moved once, of all its elements",
        name, "xyz"[cut.axis[0]], "xyz"[cut.axis[1]], (long long)cut.units, cut.computed);
-    ok((contract || what->mixed || what->fraction < 0) == (s.special > 0), "%s: %lld special cells are the problem's",
-       name, (long long)s.special);
+    ok((contract || what->mixed || what->fraction < 0 || in_cuts) == (s.special > 0),
+       "%s: %lld special cells are the problem's", name, (long long)s.special);
     const slit_piece *piece = in_slit ? &in_slit->piece[0] : NULL;
     const bool ends = piece && piece->high[0] < what->cells[(piece->axis + 1) % 3]; /* within the block */
     ok(ends == (cut.tips > 0), "%s: %lld tips", name, (long long)cut.tips);
@@ -535,6 +551,13 @@ int main(void)
             flat.cells[axes[i][a]] = sides[a];
         test_cut(&flat, axes[i], NULL, 40, "a flat block");
     }
+    in_cuts = true;
+    for (int i = 0; i < 6; i++) {
+        for (int a = 0; a < 3; a++)
+            flat.cells[axes[i][a]] = sides[a];
+        test_cut(&flat, axes[i], NULL, 40, "a flat block of parts");
+    }
+    in_cuts = false;
     for (int a = 0; a < 3; a++)
         flat.cells[a] = 29;
     test_cut(&flat, axes[1], NULL, 40, "a cube");

@@ -36,5 +36,5 @@ static void cut_fill(const cpu_state *s)
         if (run->cut >= 0)
             cut_fill_run(s, run);
     for (int64_t n = 0; s->weight && n < s->p->nodes; n++)
-        s->weight[s->rows.place[n]] = (number)(s->p->weight[n] / s->p->mass[n]);
+        s->weight[s->rows.place[n]] = (number)tled_weight_part(s->p, n);
 }

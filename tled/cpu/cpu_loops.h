@@ -565,12 +565,10 @@ static int64_t cpu_computed(const cpu_state *s)
 
 enum { CPU_FEATURES = EXECUTOR_USUAL | EXECUTOR_CONTACT | EXECUTOR_FOLLOWERS };
 
-const tled_executor CPU_EXECUTOR = {.is = {.device = "cpu",
-                                           .features = CPU_FEATURES | EXECUTOR_CUTS,
-                                           .forms = (1U << FORM_STEPPED) - 1,
-                                           .unusable = cpu_unusable},
-                                    .create = boxes_create,
-                                    CPU_FUNCTIONS};
+const tled_executor CPU_EXECUTOR = {
+    .is = {.device = "cpu", .features = CPU_FEATURES, .forms = (1U << FORM_STEPPED) - 1, .unusable = cpu_unusable},
+    .create = boxes_create,
+    CPU_FUNCTIONS};
 
 const tled_executor CPU_EXECUTOR_OF_MESHES = {.is = {.device = "cpu",
                                                      .features = EXECUTOR_MESHES | CPU_FEATURES,

@@ -60,6 +60,21 @@ static __device__ __forceinline__ element_tensor gradient_of(const cuda_march &m
     return h;
 }
 
+/* Of a cell that may be cut; cut: NULL: it is not. */
+static __device__ __forceinline__ element_tensor gradient_by(const cuda_march &m, const march_cut *cut, const face &low,
+                                                             const face &high)
+{
+    element_tensor h = gradient_of(m, low, high);
+    float more[3][3] = {};
+    if (!cut)
+        return h;
+    add_cut(*cut, low, high, more);
+    h.xx += more[0][0] * m.slope[0], h.xy += more[0][1] * m.slope[1], h.xz += more[0][2] * m.slope[2];
+    h.yx += more[1][0] * m.slope[0], h.yy += more[1][1] * m.slope[1], h.yz += more[1][2] * m.slope[2];
+    h.zx += more[2][0] * m.slope[0], h.zy += more[2][1] * m.slope[1], h.zz += more[2][2] * m.slope[2];
+    return h;
+}
+
 /* The forces of a cell: `sum` gets those on its lower face, with `below`, which becomes those on its upper face. */
 static __device__ __forceinline__ void cell_forces(const cuda_march &m, float mu, float bulk, float hourglass, bool is,
                                                    const face &low, const face &high, face *sum,
@@ -195,14 +210,29 @@ static __device__ __forceinline__ void follow(const cuda_march &m, const tissue<
         inverse[i / 3][i % 3] *= b.shear;
 }
 
-/* As cell_forces of isotropic control; PLAIN: the cell is. */
+/* Adds what V P L, p[component][axis], pulls the modes of a cut cell with, the transpose of add_cut; a cell's mode xy
+ * is the sum of its faces', xyz their difference. */
+static __device__ __forceinline__ void add_cut_forces(const march_cut &c, const float p[3][3], modes *f)
+{
+#pragma unroll
+    for (int a = 0; a < 3; a++) {
+        const float xy = p[a][0] * c.y + p[a][1] * c.x;
+        const float xyz = p[a][0] * c.yz + p[a][1] * c.zx + p[a][2] * c.xy;
+        f->low[a] += xy - xyz;
+        f->high[a] += xy + xyz;
+        f->yz[a] += p[a][1] * c.z + p[a][2] * c.y;
+        f->zx[a] += p[a][0] * c.z + p[a][2] * c.x;
+    }
+}
+
+/* As cell_forces of isotropic control; PLAIN: the cell is; cut: of a cut cell; else NULL. */
 template <march_control K, bool PLAIN>
 static __device__ __forceinline__ void cell_forces(const cuda_march &m, const tissue<K> &of, bool is, const face &low,
-                                                   const face &high, face *sum, push<K> *below)
+                                                   const face &high, const march_cut *cut, face *sum, push<K> *below)
 {
     float inverse[3][3], p[3][3];
     modes strains, stresses, f;
-    const stretch s = stretch_of<K>(m, is, low, high);
+    const stretch s = stretch_of<K>(m, is, low, high, cut);
     inverse_of<K>(m, s, inverse);
     stress_modes<K, PLAIN>(of.hold, inverse, low, high, &strains, &stresses);
     if constexpr (march_kind<K>::FORM == FORM_FIRST)
@@ -210,6 +240,8 @@ static __device__ __forceinline__ void cell_forces(const cuda_march &m, const ti
     else
         push_of<K>(m, of, scale_of(of.hold, s), s, is, p);
     force_modes(inverse, strains, stresses, &f, p);
+    if (cut)
+        add_cut_forces(*cut, p, &f);
 #pragma unroll
     for (int a = 0; a < 3; a++) {
         sum->mean[a] = below->mean[a] - p[a][2];
@@ -223,10 +255,32 @@ static __device__ __forceinline__ void cell_forces(const cuda_march &m, const ti
     }
 }
 
-/* Adds those of a muscle; h: the cell's gradient, tension: Pa. */
+/* Adds to the forces of a cut cell what a stress pulls its modes with; px, py, pz: its columns. */
+template <march_control K>
+static __device__ __forceinline__ void add_cut_tension(const cuda_march &m, const march_cut &c, const float px[3],
+                                                       const float py[3], const float pz[3], face *sum, push<K> *below)
+{
+    float p[3][3];
+    modes f = {};
+#pragma unroll
+    for (int a = 0; a < 3; a++)
+        p[a][0] = px[a] * m.area[0], p[a][1] = py[a] * m.area[1], p[a][2] = pz[a] * m.area[2];
+    add_cut_forces(c, p, &f);
+#pragma unroll
+    for (int a = 0; a < 3; a++) {
+        sum->x[a] -= f.zx[a];
+        sum->y[a] -= f.yz[a];
+        sum->xy[a] += f.low[a];
+        below->x[a] += f.zx[a];
+        below->y[a] += f.yz[a];
+        below->xy[a] += f.high[a];
+    }
+}
+
+/* Adds those of a muscle; h: the cell's gradient, tension: Pa; cut: of a cut cell; else NULL. */
 template <march_control K>
 static __device__ __forceinline__ void add_tension(const cuda_march &m, element_tensor h, element_fibre fibre,
-                                                   face *sum, push<K> *below)
+                                                   const march_cut *cut, face *sum, push<K> *below)
 {
     const element_tensor s = element_active(h, fibre);
     const float px[3] = {s.xx, s.yx, s.zx}, py[3] = {s.xy, s.yy, s.zy}, pz[3] = {s.xz, s.yz, s.zz};
@@ -239,6 +293,9 @@ static __device__ __forceinline__ void add_tension(const cuda_march &m, element_
         below->x[a] += px[a] * m.area[0];
         below->y[a] += py[a] * m.area[1];
     }
+    if constexpr (K != MARCH_ISOTROPIC)
+        if (cut)
+            add_cut_tension<K>(m, *cut, px, py, pz, sum, below);
 }
 
 /* What a cell below leaves on a face, where there is none above it. */

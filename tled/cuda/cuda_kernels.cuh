@@ -32,15 +32,59 @@ template <class G> static __device__ element_field cell_field(const real *u, con
     return at;
 }
 
+/* H of a cell that may be cut; u: displacements at its corners. */
+template <bool CUT>
+static __device__ element_tensor gradient_to(element_field u, element_vector slope, const cuda_part<CUT> &part)
+{
+    if constexpr (CUT)
+        if (part.is)
+            return element_cut_gradient(element_modes_of(u.x), element_modes_of(u.y), element_modes_of(u.z), slope,
+                                        part.c);
+    return element_gradient_to(u, slope);
+}
+
+/* As element_force_from, of such a cell. */
+template <bool CUT>
+static __device__ element_field force_from(hourglass_kind control, element_field u, element_tensor stress,
+                                           element_shape shape, const real *hourglass, const cuda_part<CUT> &part)
+{
+    if constexpr (CUT)
+        if (part.is) {
+            const element_modes x = element_modes_of(u.x), y = element_modes_of(u.y), z = element_modes_of(u.z);
+            const element_tensor h = element_cut_gradient(x, y, z, shape.slope, part.c);
+            hourglass_force held = hourglass_of(control, element_hourglass_modes(x, y, z), h, shape, hourglass);
+            return element_cut_force_of(control, stress, &held, shape, part.c);
+        }
+    return element_force_from(control, u, stress, shape, hourglass);
+}
+
 /* The law of a cell that control follows becomes that of its displacements. Returns `place`: what loads the
  * displacements by it loads them again, as they cost less than the registers that would keep them. */
 template <class G, class L>
-static __device__ int follow(const L &l, const cuda_pass &p, const real *u, const int &place, element_law *law)
+static __device__ int follow(const L &l, const cuda_pass &p, const real *u, const int &place,
+                             const cuda_part<L::CUT> &part, element_law *law)
 {
     if (!L::ASKS && !element_follows(l.which, l.control))
         return place;
-    element_follow_to(l.which, l.control, cell_field<G>(u, place), p.shape, law);
+    const element_field at = cell_field<G>(u, place);
+    if constexpr (L::CUT)
+        element_follow(l.which, l.control,
+                       element_hourglass_modes(element_modes_of(at.x), element_modes_of(at.y), element_modes_of(at.z)),
+                       gradient_to(at, p.shape.slope, part), p.shape, law);
+    else
+        element_follow_to(l.which, l.control, at, p.shape, law);
     return unknown(place);
+}
+
+/* As element_force_by, of a cell that may be cut and has no fibres that resist being stretched. */
+template <class L>
+static __device__ element_field force_by(const L &l, element_field u, element_shape shape, element_law law,
+                                         element_fibre fibre, bool pulls, element_fibre second, bool second_pulls,
+                                         const cuda_part<L::CUT> &part)
+{
+    const element_tensor h = gradient_to(u, shape.slope, part);
+    const element_tensor stress = element_stress(l.which, h, law.c, fibre, pulls, second, second_pulls, NULL, 0);
+    return force_from(l.control, u, stress, shape, law.hourglass, part);
 }
 
 static __device__ element_vector cell_along(const tile &t, int i, const float *fibre)
@@ -79,7 +123,8 @@ static __device__ element_field mixed_force(const L &l, const cuda_view<real> &v
     const cuda_kind &mix = v.kind[mixed.mix];
     const real part = (real)mixed.share, own = share * (1 - part), other = share * part;
     element_law law = law_of(l, mixed.c, mixed.hourglass, share);
-    const int again = follow<G>(l, p, u, place, &law);
+    const cuda_part<L::CUT> cut = cuda_part_of<L::CUT>(v, t.cell + i);
+    const int again = follow<G>(l, p, u, place, cut, &law);
     element_fibre fibre = {{0, 0, 0}, 0, {0, 0, 0, 0}}, second = fibre;
     real tension = 0, tension_of_mix = 0;
     if (i < t.fibred) {
@@ -92,8 +137,7 @@ static __device__ element_field mixed_force(const L &l, const cuda_view<real> &v
         second.along = cell_along(t, i, v.mixfibre);
         second.tension = other * tension_of_mix;
     }
-    return element_force_by(l.which, l.control, cell_field<G>(u, again), p.shape, law, fibre, tension != 0, second,
-                            tension_of_mix != 0, NULL, 0);
+    return force_by(l, cell_field<G>(u, again), p.shape, law, fibre, tension != 0, second, tension_of_mix != 0, cut);
 }
 
 template <class G, class L>
@@ -102,15 +146,15 @@ static __device__ element_field plain_force(const L &l, const cuda_view<real> &v
 {
     const real *stiff = p.law + (l.coefficients + l.held) * volume;
     element_law law = law_of(l, stiff, stiff + l.coefficients, share);
-    const int again = follow<G>(l, p, u, place, &law);
+    const cuda_part<L::CUT> cut = cuda_part_of<L::CUT>(v, t.cell + i);
+    const int again = follow<G>(l, p, u, place, cut, &law);
     element_fibre fibre = {{0, 0, 0}, 0, {0, 0, 0, 0}};
     if (i < t.fibred) {
         const cuda_kind &kind = v.kind[volume];
         fibre.along = cell_along(t, i, v.fibre);
         fibre.tension = share * (real)(kind.peak * p.now[3 * kind.contract]);
     }
-    return element_force_by(l.which, l.control, cell_field<G>(u, again), p.shape, law, fibre, fibre.tension != 0, fibre,
-                            ELEMENT_NO_MUSCLE, NULL, 0);
+    return force_by(l, cell_field<G>(u, again), p.shape, law, fibre, fibre.tension != 0, fibre, false, cut);
 }
 
 /* What is to be looked at of a volume's muscle: ELEMENT_MUSCLE and so on. */
@@ -204,8 +248,9 @@ static __device__ element_field fibred_force(const L &l, const cuda_view<real> &
     const real *stiff = p.law + (l.coefficients + l.held) * volume;
     element_law law =
         MIXED ? law_of(l, mixed->c, mixed->hourglass, share) : law_of(l, stiff, stiff + l.coefficients, share);
-    const int again = follow<G>(l, p, u, place, &law);
-    const element_tensor h = element_gradient_to(cell_field<G>(u, again), p.shape.slope);
+    const cuda_part<L::CUT> cut = cuda_part_of<L::CUT>(v, t.cell + i);
+    const int again = follow<G>(l, p, u, place, cut, &law);
+    const element_tensor h = gradient_to(cell_field<G>(u, again), p.shape.slope, cut);
     element_tensor stress = form_stress(l.which, h, law.c);
     if (i < t.fibred) {
         const real part = MIXED ? (real)mixed->share : 0;
@@ -216,7 +261,7 @@ static __device__ element_field fibred_force(const L &l, const cuda_view<real> &
                                         v.mixfamily, v.mixcontractile + cell, share * part);
         add_fibres<MIXED>(v, p, own, other, t.direction + i, h, &stress);
     }
-    return element_force_from(l.control, cell_field<G>(u, unknown(again)), stress, p.shape, law.hourglass);
+    return force_from(l.control, cell_field<G>(u, unknown(again)), stress, p.shape, law.hourglass, cut);
 }
 
 /* A cell's forces at its corners. mixed: which of v.mixture it is, or -1. */
@@ -360,11 +405,11 @@ typedef struct node_pull {
     const tile_extra *extra;
 } node_pull;
 
-/* One component of a node. */
-static __device__ void move_node(const cuda_pass &p, int a, bool is_free, const node_pull &pull, real mass_inverse,
-                                 real *velocity, real *u)
+/* One component of a node; gravity: its part of the acceleration. */
+static __device__ void move_node(const cuda_pass &p, int a, bool is_free, real gravity, const node_pull &pull,
+                                 real mass_inverse, real *velocity, real *u)
 {
-    real acceleration = is_free ? p.gravity[a] + pull.net[a] * mass_inverse : 0;
+    real acceleration = is_free ? gravity + pull.net[a] * mass_inverse : 0;
     if (p.what & PASS_FINISH && is_free)
         *velocity = node_finish(*velocity, acceleration, p.factors);
     if (p.what & PASS_BEGIN) {
@@ -379,11 +424,23 @@ static __device__ void move_node(const cuda_pass &p, int a, bool is_free, const 
     }
 }
 
-/* What a thread knows of its node. */
-typedef struct own_node {
+/* What a thread knows of its node. CUT: where elements may be cut, what gravity acts on too, in parts of its mass. */
+template <bool CUT> struct own_node {
     uint32_t info;
     real mass_inverse, velocity[3];
-} own_node;
+};
+template <> struct own_node<true> {
+    uint32_t info;
+    real mass_inverse, velocity[3], weight;
+};
+
+template <bool CUT> static __device__ real gravity_on(const cuda_pass &p, const own_node<CUT> &own, int a)
+{
+    if constexpr (CUT)
+        return p.gravity[a] * own.weight;
+    else
+        return p.gravity[a];
+}
 
 static __device__ node_pull node_pulled(const cuda_view<real> &v, const cuda_pass &p, int32_t n, uint32_t info,
                                         element_vector f, const real u[3])
@@ -399,22 +456,27 @@ static __device__ node_pull node_pulled(const cuda_view<real> &v, const cuda_pas
 }
 
 /* A node's step for the elements' pull f: own->velocity and u (its three components) move on. */
+template <bool CUT>
 static __device__ void step_node(const cuda_view<real> &v, const cuda_pass &p, int32_t n, element_vector f,
-                                 own_node *own, real u[3])
+                                 own_node<CUT> *own, real u[3])
 {
     const node_pull pull = node_pulled(v, p, n, own->info, f, u);
 #pragma unroll
     for (int a = 0; a < 3; a++)
-        move_node(p, a, own->info >> (TILE_FREE + a) & 1, pull, own->mass_inverse, &own->velocity[a], &u[a]);
+        move_node(p, a, own->info >> (TILE_FREE + a) & 1, gravity_on(p, *own, a), pull, own->mass_inverse,
+                  &own->velocity[a], &u[a]);
 }
 
-static __device__ own_node node_at(const cuda_view<real> &v, const cuda_pass &p, const tile &t, int i)
+template <bool CUT>
+static __device__ own_node<CUT> node_at(const cuda_view<real> &v, const cuda_pass &p, const tile &t, int i)
 {
-    own_node own = {0, 0, {0, 0, 0}};
+    own_node<CUT> own = {0, 0, {0, 0, 0}};
     if (i < t.nodes) {
         const int32_t n = t.node + i;
         own.info = v.node_info[n];
         own.mass_inverse = v.mass_inverse[n];
+        if constexpr (CUT)
+            own.weight = v.weight[n];
         for (int a = 0; a < 3; a++)
             own.velocity[a] = p.velocity[a * v.stride + n];
     }
@@ -422,8 +484,8 @@ static __device__ own_node node_at(const cuda_view<real> &v, const cuda_pass &p,
 }
 
 /* f: the elements' pull. */
-template <class G>
-static __device__ void one_node(const cuda_view<real> &v, const cuda_pass &p, const tile &t, int i, own_node own,
+template <class G, bool CUT>
+static __device__ void one_node(const cuda_view<real> &v, const cuda_pass &p, const tile &t, int i, own_node<CUT> own,
                                 element_vector f, const real *grid)
 {
     const int32_t n = t.node + i;
@@ -442,16 +504,16 @@ static __device__ void one_node(const cuda_view<real> &v, const cuda_pass &p, co
     }
 }
 
-/* Double precision takes more registers than so many blocks would leave it, and any form may do. */
+/* Double precision takes more registers than so many blocks would leave it, and any form and cut elements may do. */
 template <class G, class L> static constexpr int together(void)
 {
-    return sizeof(real) == sizeof(float) ? (L::ASKS ? (G::TOGETHER + 1) / 2 : G::TOGETHER) : 1;
+    return sizeof(real) == sizeof(float) ? (L::ASKS || L::CUT ? (G::TOGETHER + 1) / 2 : G::TOGETHER) : 1;
 }
 
 /* But 16 warps of it are to be on a multiprocessor: of physical control, a few more registers would halve them. */
 template <class G, class L> static constexpr int passes_together(void)
 {
-    return sizeof(real) == sizeof(float) ? together<G, L>() : L::ASKS ? 1 : 512 / G::THREADS;
+    return sizeof(real) == sizeof(float) ? together<G, L>() : L::ASKS || L::CUT ? 1 : 512 / G::THREADS;
 }
 
 template <class G, class L, class T>
@@ -469,12 +531,12 @@ static __global__ void __launch_bounds__(G::THREADS, passes_together<G, L>())
     cuda_load<G, true>(v, t, p.from, u);
     __syncthreads();
     cell_forces<G, T>(l, v, p, t, first, u, force);
-    own_node own = node_at(v, p, t, threadIdx.x);
+    own_node<L::CUT> own = node_at<L::CUT>(v, p, t, threadIdx.x);
     node_told<T::LISTED> told = node_row(v, t, list, threadIdx.x);
     __syncthreads();
     for (int i = threadIdx.x; i < t.nodes; i += G::THREADS) {
         one_node<G>(v, p, t, i, own, node_sum<G>(own.info, told, list, force), u);
-        own = node_at(v, p, t, i + G::THREADS);
+        own = node_at<L::CUT>(v, p, t, i + G::THREADS);
         told = node_row(v, t, list, i + G::THREADS);
     }
 }

@@ -3,7 +3,8 @@
  * add up parts, one adds up what these have.
  */
 extern "C" {
-#include "physics/stability.h"
+#include "physics/stability_cut.h"
+#include "tled/problem/cut.h"
 }
 #include "tled/cuda/cuda_fibres.cuh"
 #include "tled/cuda/cuda_sums.cuh"
@@ -72,7 +73,7 @@ static __device__ void hold_cell(hourglass_kind control, hourglass_modes m, cons
     c->twist = sqrt(hourglass_dot(&w, &w));
 }
 
-template <class G, class S>
+template <class G, bool CUT, class S>
 static __device__ one_cell cell_of(const cuda_look<S> &l, const tile &t, int i, const S *u, const element_shape &shape)
 {
     const cuda_view<S> &v = l.view;
@@ -95,6 +96,11 @@ static __device__ one_cell cell_of(const cuda_look<S> &l, const tile &t, int i, 
     for (int k = 0; k < FORM_NUMBERS; k++) /* 0, where the form has fewer */
         c.own.c[k] = from[k];
     c.h = element_gradient(x, y, z, shape.slope);
+    if constexpr (CUT) {
+        const cuda_part<true> part = cuda_part_of<true>(v, t.cell + i);
+        if (part.is)
+            c.h = element_cut_gradient(x, y, z, shape.slope, part.c);
+    }
     c.stiffening = stability_stiffening_of(l.which, l.control, c.h, c.own.c);
     hold_cell(l.control, element_hourglass_modes(x, y, z), shape, held, &c);
     return c;
@@ -188,48 +194,6 @@ template <class S> static __device__ void stiffen(const cuda_look<S> &l, one_cel
     stability_stiffen(c->stiffening, c->hourglass / (c->stiffening.now * volume), c->own.c);
 }
 
-/* The cells that a tile owns: of each cell and each of its nodes, one. */
-template <class G> struct own_cells {
-    enum { WARPS = G::THREADS / 32, ROUNDS = ((G::BX + 1) * (G::BY + 1) * (G::BZ + 1) + G::THREADS - 1) / G::THREADS };
-    int32_t cell[G::NODES];
-    int32_t count[ROUNDS * WARPS]; /* in each 32 cells */
-};
-
-/* Who of the threads beside this one has one of the tile's own, in each round; their counts go to *to. */
-template <class G>
-static __device__ void count_own(const uint32_t *cell, const tile &t, unsigned *who, own_cells<G> *to)
-{
-    constexpr int ROUNDS = own_cells<G>::ROUNDS, WARPS = own_cells<G>::WARPS;
-    uint32_t mine[ROUNDS];
-#pragma unroll
-    for (int k = 0; k < ROUNDS; k++) {
-        const int i = k * G::THREADS + (int)threadIdx.x;
-        mine[k] = i < t.cells ? cell[t.cell + i] : 0;
-    }
-#pragma unroll
-    for (int k = 0; k < ROUNDS; k++) {
-        who[k] = __ballot_sync(~0u, mine[k] >> TILE_OWN & 1);
-        if (threadIdx.x % 32 == 0)
-            to->count[k * WARPS + threadIdx.x / 32] = __popc(who[k]);
-    }
-}
-
-/* Lists them, in their order, when the counts are there. Returns how many there are. */
-template <class G> static __device__ int list_own(const unsigned *who, own_cells<G> *to)
-{
-    constexpr int ROUNDS = own_cells<G>::ROUNDS, WARPS = own_cells<G>::WARPS;
-    const unsigned warp = threadIdx.x / 32, lane = threadIdx.x % 32;
-    int count = 0;
-#pragma unroll
-    for (int k = 0; k < ROUNDS; k++)
-        for (unsigned w = 0; w < WARPS; w++) {
-            if (w == warp && who[k] >> lane & 1)
-                to->cell[count + __popc(who[k] & ((1u << lane) - 1))] = (int)(k * G::THREADS + threadIdx.x);
-            count += to->count[k * WARPS + w];
-        }
-    return count;
-}
-
 /* Between which the largest eigenvalue of its matrix lies; d: stability_range_scaled's. */
 template <bool FIBRED, class S>
 static __device__ stability_range range_of(const cuda_look<S> &l, const one_cell &c, element_vector d,
@@ -257,9 +221,24 @@ static __device__ stability_twists twists_of(hourglass_kind control, const one_c
     return stability_twists_by(control, c.own.twists, parts.slope, c.h, c.twist, c.stiffening);
 }
 
+/* With twists. Of a cell that is cut, the whole one's times |G| at most, and at least as much, as G has no eigenvalue
+ * below 1 (stability_cut.h). */
+template <class S>
+static __device__ stability_range cut_range(const cuda_look<S> &l, int64_t cell, stability_range whole,
+                                            stability_twists twists)
+{
+    const cuda_part<true> part = cuda_part_of<true>(l.view, cell);
+    if (!part.is)
+        return stability_range_with(whole, twists);
+    const double by = cut_lighter(l.view.share[cell]);
+    const stability_gram g = stability_gram_of(part.c);
+    const stability_range range = {by * whole.low, by * stability_gram_bound(&g) * whole.high};
+    return stability_range_with(range, stability_cut_twists(part.c, by, twists));
+}
+
 /* Strain energies, what is broken, and bounds of frequencies, of a thread's cells; no matrices, which take a thread
  * nearly twice the registers. Returns what is proven. */
-template <class G, bool FIBRED, class S>
+template <class G, bool FIBRED, bool CUT, class S>
 static __device__ double look_at_cells(const cuda_look<S> &l, const tile &t, const S *u, const own_cells<G> &own,
                                        int count, const look_parts &parts, tled_sums *to)
 {
@@ -267,7 +246,7 @@ static __device__ double look_at_cells(const cuda_look<S> &l, const tile &t, con
 #pragma unroll 1
     for (int k = threadIdx.x; k < count; k += G::THREADS) {
         const int i = own.cell[k];
-        one_cell c = cell_of<G>(l, t, i, u, parts.shape);
+        one_cell c = cell_of<G, CUT>(l, t, i, u, parts.shape);
         const double strain = strain_of<FIBRED>(l, t, i, c);
         if (!(strain < INFINITY)) {
             to->broken = to->broken < 0 ? t.cell + i : to->broken;
@@ -278,7 +257,13 @@ static __device__ double look_at_cells(const cuda_look<S> &l, const tile &t, con
         const cell_fibres<FIBRED> fibres = fibres_of<FIBRED>(l, t, i, c);
         const double unit = 8 / sqrt(c.own.density);
         const element_vector slope = parts.shape.slope, d = {unit * slope.x, unit * slope.y, unit * slope.z};
-        const stability_range range = stability_range_with(range_of(l, c, d, fibres), twists_of(l.control, c, parts));
+        const stability_range whole = range_of(l, c, d, fibres);
+        const stability_twists twists = twists_of(l.control, c, parts);
+        stability_range range;
+        if constexpr (CUT)
+            range = cut_range(l, t.cell + i, whole, twists);
+        else
+            range = stability_range_with(whole, twists);
         if (range.high <= l.question.rest)
             continue;
         const double bound = isnan(range.high) ? INFINITY : range.high;
@@ -292,6 +277,18 @@ static __device__ double look_at_cells(const cuda_look<S> &l, const tile &t, con
 }
 
 /* ---- matrices */
+
+/* Of a cell that is cut, from what is known of a whole one (tled/problem/cut.h). */
+template <class S>
+static __device__ void cut_cell(const cuda_look<S> &l, int64_t cell, step_matrix *a, stability_twists *twists)
+{
+    const cuda_part<true> part = cuda_part_of<true>(l.view, cell);
+    if (!part.is)
+        return;
+    const double by = cut_lighter(l.view.share[cell]);
+    stability_cut_matrix(part.c, by, a);
+    *twists = stability_cut_twists(part.c, by, *twists);
+}
 
 /* What a tile's block knows of its highest frequency so far. */
 typedef struct highest {
@@ -325,7 +322,7 @@ static __device__ void raise_limit(const step_matrix *a, stability_twists twists
 }
 
 /* The frequency of a tile by its cells' matrices. */
-template <class G, bool FIBRED, class S>
+template <class G, bool FIBRED, bool CUT, class S>
 static __device__ void solve_tile(const cuda_look<S> &l, const tile &t,
 
                                   const look_parts &parts, tled_sums *out, S *u, double *scratch, int *least)
@@ -340,12 +337,14 @@ static __device__ void solve_tile(const cuda_look<S> &l, const tile &t,
         step_matrix a;
         stability_twists twists = {0, 0};
         if (past) {
-            one_cell c = cell_of<G>(l, t, i, u, parts.shape);
+            one_cell c = cell_of<G, CUT>(l, t, i, u, parts.shape);
             const cell_fibres<FIBRED> fibres = fibres_of<FIBRED>(l, t, i, c);
             twists = twists_of(l.control, c, parts);
             past = strain_of<FIBRED>(l, t, i, c) < INFINITY;
             stiffen(l, &c);
             matrix_of(l, c, fibres, &a);
+            if constexpr (CUT)
+                cut_cell(l, t.cell + i, &a, &twists);
         }
         past = past && !stability_below(&a, stability_room(twists, h.limit));
         if (__syncthreads_or(past))
@@ -376,13 +375,13 @@ template <class S> static __device__ look_node<S> node_at(const cuda_look<S> &l,
     return x;
 }
 
-/* What acts on it from outside. */
+/* What acts on it from outside; weight: what gravity acts on, kg. */
 template <class S>
-static __device__ void forces_on(const cuda_look<S> &l, int32_t n, const look_node<S> &x, double mass, double *to)
+static __device__ void forces_on(const cuda_look<S> &l, int32_t n, const look_node<S> &x, double weight, double *to)
 {
     const cuda_view<S> &v = l.view;
     for (int a = 0; a < 3; a++)
-        to[a] = v.gravity >= 0 ? mass * l.now[3 * v.gravity + a] : 0;
+        to[a] = v.gravity >= 0 ? weight * l.now[3 * v.gravity + a] : 0;
     if (!(x.info >> TILE_EXTRA & 1))
         return;
     const tile_extra *extra = cuda_extra(v, n);
@@ -391,12 +390,15 @@ static __device__ void forces_on(const cuda_look<S> &l, int32_t n, const look_no
             to[a] += cuda_force(v, k, l.now, a, (double)x.u[a]);
 }
 
-template <class S>
+template <bool CUT, class S>
 static __device__ void look_at_node(const cuda_look<S> &l, int32_t n, const look_node<S> &x, tled_sums *to)
 {
     const double inverse = x.mass_inverse, mass = 1 / inverse;
     double outside[3], square = 0;
-    forces_on(l, n, x, mass, outside);
+    if constexpr (CUT)
+        forces_on(l, n, x, mass * (double)l.view.weight[n], outside);
+    else
+        forces_on(l, n, x, mass, outside);
     for (int a = 0; a < 3; a++) {
         const double u = x.u[a], speed = x.speed[a], drive = mass * speed * speed;
         const double gap = outside[a] - x.internal[a];
@@ -419,7 +421,7 @@ static __device__ void look_at_node(const cuda_look<S> &l, int32_t n, const look
 }
 
 /* A thread's of a block's share of the nodes. */
-template <int THREADS, class S>
+template <int THREADS, bool CUT, class S>
 static __device__ void look_at_nodes(const cuda_look<S> &l, int64_t share, tled_sums *to)
 {
     const int64_t all = l.view.nodes, first = blockIdx.x * share;
@@ -434,7 +436,7 @@ static __device__ void look_at_nodes(const cuda_look<S> &l, int64_t share, tled_
 #pragma unroll
         for (int k = 0; k < NODES_AT_ONCE; k++)
             if (n + k * THREADS < end)
-                look_at_node(l, (int32_t)(n + k * THREADS), x[k], to);
+                look_at_node<CUT>(l, (int32_t)(n + k * THREADS), x[k], to);
     }
 }
 
@@ -442,7 +444,7 @@ static __device__ void look_at_nodes(const cuda_look<S> &l, int64_t share, tled_
 
 /* What bounds tell of a tile's cells, and sums over them and over a share of the nodes: what waits for memory in one
  * block is beside what computes in others. */
-template <class G, bool FIBRED, class S>
+template <class G, bool FIBRED, bool CUT, class S>
 static __global__ void __launch_bounds__(G::THREADS, 512 / G::THREADS)
     look_kernel(const __grid_constant__ cuda_look<S> l, const __grid_constant__ look_parts out)
 {
@@ -457,7 +459,7 @@ static __global__ void __launch_bounds__(G::THREADS, 512 / G::THREADS)
     count_own<G>(l.view.cell, t, who, &own);
     cuda_load<G, false>(l.view, t, l.displacement, u);
     tled_sums mine = nothing_seen(l.question.rest);
-    look_at_nodes<G::THREADS>(l, out.share, &mine);
+    look_at_nodes<G::THREADS, CUT>(l, out.share, &mine);
     sum_nodes(&mine, l.saved_displacement);
     if (threadIdx.x % 32 == 0)
         part[warp] = mine;
@@ -465,7 +467,7 @@ static __global__ void __launch_bounds__(G::THREADS, 512 / G::THREADS)
     const int count = list_own<G>(who, &own);
     __syncthreads();
     mine = nothing_seen(l.question.rest);
-    const double most = warp_most(look_at_cells<G, FIBRED>(l, t, u, own, count, out, &mine));
+    const double most = warp_most(look_at_cells<G, FIBRED, CUT>(l, t, u, own, count, out, &mine));
     sum_cells(&mine);
     if (threadIdx.x % 32 == 0) {
         add_part(&part[warp], mine);
@@ -497,7 +499,7 @@ static __device__ double proven_of_all(const double *proven, int64_t tiles, doub
  * reach: others' limits may stay, for if one of them is the highest of all, it is too high by `raise` at most.
  * Where no tile is known to pass the frequency at rest, it is for all that may. Then it adds up what their
  * blocks left, where the first of these was. */
-template <class G, bool FIBRED, class S>
+template <class G, bool FIBRED, bool CUT, class S>
 static __global__ void __launch_bounds__(G::THREADS)
     settle_kernel(const __grid_constant__ cuda_look<S> l, const __grid_constant__ look_parts parts)
 {
@@ -514,7 +516,7 @@ static __global__ void __launch_bounds__(G::THREADS)
         int next = own < l.count && parts.block[own].frequency > enough ? (int)threadIdx.x : NONE;
         for (int which; (which = block_least(next, &least)) != NONE;) {
             const int64_t at = base + which * stride;
-            solve_tile<G, FIBRED>(l, l.view.tiles[at], parts, &parts.block[at], u, number, &least);
+            solve_tile<G, FIBRED, CUT>(l, l.view.tiles[at], parts, &parts.block[at], u, number, &least);
             next = next == which ? NONE : next;
         }
         if (own < l.count)
@@ -534,13 +536,14 @@ static __global__ void __launch_bounds__(SUM_THREADS)
 }
 
 /* By bricks G. */
-template <class G, bool FIBRED, class S>
+template <class G, bool FIBRED, bool CUT, class S>
 static cudaError_t start_in(const cuda_look<S> *l, const look_parts &parts, int64_t solvers, cudaStream_t stream)
 {
     typedef cuda_brick<G::BX, G::BY, G::BZ, LOOK_THREADS, 1> W;
-    const cudaError_t bounds = card_start(look_kernel<W, FIBRED, S>, {l->count, W::THREADS, 0, stream}, *l, parts);
-    return bounds == cudaSuccess ? card_start(settle_kernel<G, FIBRED, S>, {solvers, G::THREADS, 0, stream}, *l, parts)
-                                 : bounds;
+    const cudaError_t bounds = card_start(look_kernel<W, FIBRED, CUT, S>, {l->count, W::THREADS, 0, stream}, *l, parts);
+    return bounds == cudaSuccess
+               ? card_start(settle_kernel<G, FIBRED, CUT, S>, {solvers, G::THREADS, 0, stream}, *l, parts)
+               : bounds;
 }
 
 template <class S> cudaError_t cuda_look_start(const cuda_look<S> *l, tled_sums *sums, cudaStream_t stream)
@@ -549,7 +552,10 @@ template <class S> cudaError_t cuda_look_start(const cuda_look<S> *l, tled_sums 
     const int64_t solvers = l->count < SOLVERS ? l->count : SOLVERS;
     cudaError_t e = with_brick(l->size, [&](auto g) {
         typedef decltype(g) G;
-        return l->fibres ? start_in<G, true>(l, parts, solvers, stream) : start_in<G, false>(l, parts, solvers, stream);
+        if (l->view.cut)
+            return start_in<G, true, true>(l, parts, solvers, stream);
+        return l->fibres ? start_in<G, true, false>(l, parts, solvers, stream)
+                         : start_in<G, false, false>(l, parts, solvers, stream);
     });
     return e == cudaSuccess
                ? card_start(sums_kernel, {1, SUM_THREADS, 0, stream}, parts.block, solvers, l->question.rest, sums)

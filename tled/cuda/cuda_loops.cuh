@@ -61,6 +61,15 @@ static int find_internal(cuda_state *s, err *e)
 
 /* ---- in and out */
 
+/* A number whose last bits have room for MARCH_BITS: to 1e-6 of it. */
+static uint32_t weight_bits(double weight)
+{
+    const float number = (float)weight;
+    uint32_t bits;
+    memcpy(&bits, &number, sizeof bits);
+    return (bits + (MARCH_BITS + 1) / 2) & ~(uint32_t)MARCH_BITS;
+}
+
 /* The fourth number of a node where it marches: of a displacement, or else of a velocity. */
 static float fourth(const cuda_state *s, bool is_displacement, int64_t k)
 {
@@ -71,6 +80,8 @@ static float fourth(const cuda_state *s, bool is_displacement, int64_t k)
         return (float)(1 / s->p->mass[s->tiles.node[k]]);
     for (int a = 0; a < 3; a++)
         bits |= (info >> (TILE_FREE + s->march.axis[a]) & 1) << (MARCH_FREE + a);
+    if (s->p->weight)
+        bits |= weight_bits(tled_weight_part(s->p, s->tiles.node[k]));
     memcpy(&number, &bits, sizeof number);
     return number;
 }

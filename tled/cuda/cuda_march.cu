@@ -128,28 +128,36 @@ static __device__ __forceinline__ void send_special(const cuda_march &m, uint32_
     send(to + RECORD, cell + 1, true);
 }
 
+/* What this thread's special cell of a layer has if it is cut; else NULL. */
+template <bool CUTS>
+static __device__ __forceinline__ const march_cut *cut_of(const cuda_march &m, bool special, int32_t layer)
+{
+    const int32_t which = CUTS && special ? which_of(m, m.detail[layer]) : 0;
+    return which && which <= m.cuts ? m.cut + which - 1 : NULL;
+}
+
 /* Adds those of a special cell's muscles. The gradient is found once more, so that other cells need not keep
  * theirs; here, next: where the displacements of the cell's layers stand; layer: of all; few cells have a
- * second muscle, which is looked for there. */
+ * second muscle, which is looked for there. cut: cut_of. */
 template <march_control K>
 static __device__ __forceinline__ void muscle_forces(const cuda_march &m, const double *now, uint32_t record,
-                                                     int32_t layer, uint32_t here, uint32_t next, face *sum,
-                                                     push<K> *below)
+                                                     int32_t layer, uint32_t here, uint32_t next, const march_cut *cut,
+                                                     face *sum, push<K> *below)
 {
     const float4 first = shared_load(record + RECORD);
     const int32_t curve = (int32_t)__float_as_uint(first.w);
     if (curve < 0)
         return;
-    const element_tensor h = gradient_of(m, face_at(here), face_at(next));
+    const element_tensor h = gradient_by(m, cut, face_at(here), face_at(next));
     const float peak = shared_number(record + 12);
-    add_tension(m, h, {{first.x, first.y, first.z}, peak * (float)now[3 * (curve & ~MARCH_SECOND)]}, sum, below);
+    add_tension(m, h, {{first.x, first.y, first.z}, peak * (float)now[3 * (curve & ~MARCH_SECOND)]}, cut, sum, below);
     if (!(curve & MARCH_SECOND))
         return;
     const march_cell *cell = m.cell + which_of(m, m.detail[layer]) - 1;
     const march_muscle &second = cell->muscle[1];
     add_tension(m, h,
                 {{second.fibre[0], second.fibre[1], second.fibre[2]}, cell->second_peak * (float)now[3 * second.curve]},
-                sum, below);
+                cut, sum, below);
 }
 
 /* The directions of row `at`, if there are families. */
@@ -174,13 +182,14 @@ static __device__ __forceinline__ tissue<K> tissue_of(const cuda_march &m, uint2
 }
 
 /* As cell_forces, of any cell of layer c. */
-template <march_control K, bool SPECIAL>
+template <march_control K, bool SPECIAL, bool CUTS>
 static __device__ __forceinline__ void forces_of(const cuda_march &m, const double *now, const turn &t, flow<K> *f,
                                                  int c, const face &low, const face &high, uint32_t here, uint32_t next,
                                                  face *sum)
 {
     const bool is = f->now & MARCH_CELL, special = SPECIAL && f->now & MARCH_SPECIAL;
     const uint32_t record = record_of(t.memory, c);
+    const march_cut *cut = cut_of<CUTS>(m, special, t.base + c);
     if constexpr (K == MARCH_ISOTROPIC) {
         float mu = is ? m.law[0] : 0, bulk = is ? m.law[1] : 0, hourglass = is ? m.law[2] : 0;
         if (special) {
@@ -190,10 +199,10 @@ static __device__ __forceinline__ void forces_of(const cuda_march &m, const doub
         cell_forces(m, mu, bulk, hourglass, is, low, high, sum, &f->below);
     } else {
         const tissue<K> of = tissue_of<K>(m, f->along, special, t.base + c, record);
-        cell_forces<K, !SPECIAL>(m, of, is, low, high, sum, &f->below);
+        cell_forces<K, !SPECIAL>(m, of, is, low, high, cut, sum, &f->below);
     }
     if (special)
-        muscle_forces(m, now, record, t.base + c, here, next, sum, &f->below);
+        muscle_forces(m, now, record, t.base + c, here, next, cut, sum, &f->below);
 }
 
 /* The forces on the corners of a face go to shared memory. */
@@ -291,7 +300,7 @@ template <bool SPECIAL, int ODD> static __device__ __forceinline__ void wait_bef
 /* Layer c of cells of a unit, whose lower face is `low`, and layer c - 1 of nodes; odd: c is. left: layers from c on.
  * next: where the displacements of layer c + 1 stand; old: those of c - 1, and those of c + 7 from here on. Who has no
  * cells finds the face of those that the next layer has. */
-template <march_control K, bool SPECIAL, bool STEP, int ODD>
+template <march_control K, bool SPECIAL, bool STEP, bool CUTS, int ODD>
 static __device__ __forceinline__ void layer(const cuda_march &m, const cuda_march_pass &p, const turn &t, uint32_t at,
                                              flow<K> *f, int left, uint32_t next, uint32_t old, const face &low,
                                              face *high)
@@ -304,7 +313,7 @@ static __device__ __forceinline__ void layer(const cuda_march &m, const cuda_mar
     if (__any_sync(~0u, f->now & MARCH_CELL)) {
         face sum;
         *high = face_at(at + next);
-        forces_of<K, SPECIAL>(m, now_of(p, t), t, f, c, low, *high, here, at + next, &sum);
+        forces_of<K, SPECIAL, CUTS>(m, now_of(p, t), t, f, c, low, *high, here, at + next, &sum);
         f->empty = 0;
         wait_before<SPECIAL, ODD>(t);
         share_forces(sum, forces);
@@ -317,7 +326,7 @@ static __device__ __forceinline__ void layer(const cuda_march &m, const cuda_mar
         f->below = {};
         f->empty++;
     }
-    move_node<STEP>(m, p, t, f->last, before, at + old, speed);
+    move_node<STEP, CUTS>(m, p, t, f->last, before, at + old, speed);
     if (left >= MARCH_AHEAD) {
         send_both(speed, node_of(p.velocity, f->speed), f->speed & MARCH_OWN, at + old, node_of(from_of(p, t), f->far),
                   f->far & MARCH_THERE);
@@ -396,7 +405,7 @@ static __device__ __forceinline__ uint32_t after(uint32_t stage)
     return stage == (STAGES - 1) * STAGE ? 0 : stage + STAGE;
 }
 
-template <march_control K, bool SPECIAL, bool STEP>
+template <march_control K, bool SPECIAL, bool STEP, bool CUTS>
 static __device__ __forceinline__ void march_unit_of(const cuda_march &m, const cuda_march_pass &p, const turn &t,
                                                      uint32_t unit)
 {
@@ -408,19 +417,19 @@ static __device__ __forceinline__ void march_unit_of(const cuda_march &m, const 
     uint32_t next = STAGE, old = (STAGES - 1) * STAGE;
 #pragma unroll 1
     for (int left = last;;) {
-        layer<K, SPECIAL, STEP, 0>(m, p, t, at, &f, left, next, old, even, &odd);
+        layer<K, SPECIAL, STEP, CUTS, 0>(m, p, t, at, &f, left, next, old, even, &odd);
         next = after(next), old = after(old);
         if (--left == 0)
             break;
-        layer<K, SPECIAL, STEP, 1>(m, p, t, at, &f, left, next, old, odd, &even);
+        layer<K, SPECIAL, STEP, CUTS, 1>(m, p, t, at, &f, left, next, old, odd, &even);
         next = after(next), old = after(old);
         if (--left == 0)
             break;
     }
     arrived<0>();
     barrier_wait(t.memory + SAID, (last - 1) % 2);
-    move_node<STEP>(m, p, t, f.last, at + FORCES + (uint32_t)(last - 1) % 2 * FORCES_EACH, at + old,
-                    at + VELOCITIES + (uint32_t)last % SPEEDS * FORCE);
+    move_node<STEP, CUTS>(m, p, t, f.last, at + FORCES + (uint32_t)(last - 1) % 2 * FORCES_EACH, at + old,
+                          at + VELOCITIES + (uint32_t)last % SPEEDS * FORCE);
     if (last % 2) { /* the next unit's first phase is even again */
         say_done(t);
         barrier_wait(t.memory + SAID, 1);
@@ -439,8 +448,9 @@ static __device__ __forceinline__ void take_first(const cuda_march &m, const cud
 }
 
 /* Blocks take units in turn, pass after pass. What special cells take in registers, units without them do without; nor
- * do passes that end a step and begin the next ask what they are. SPECIALS: the model has special cells. */
-template <march_control K, bool TIPS, bool SPECIALS>
+ * do passes that end a step and begin the next ask what they are. SPECIALS: the model has special cells; CUTS: some of
+ * them are cut. */
+template <march_control K, bool TIPS, bool SPECIALS, bool CUTS>
 static __global__ void __launch_bounds__(MARCH_THREADS, TOGETHER)
     march_kernel(const __grid_constant__ cuda_march m, const __grid_constant__ cuda_march_pass p)
 {
@@ -461,13 +471,13 @@ static __global__ void __launch_bounds__(MARCH_THREADS, TOGETHER)
         t.cells = (int32_t)__float_as_uint(next.y);
         const bool special = __float_as_uint(next.z);
         if (TIPS && t.cells == 0)
-            move_tips<K>(m, p, t, unit, (int)__float_as_uint(next.w));
+            move_tips<K, CUTS>(m, p, t, unit, (int)__float_as_uint(next.w));
         else if (SPECIALS && t.kind == MARCH_STEP && special)
-            march_unit_of<K, SPECIALS, true>(m, p, t, unit);
+            march_unit_of<K, SPECIALS, true, CUTS>(m, p, t, unit);
         else if (t.kind == MARCH_STEP)
-            march_unit_of<K, false, true>(m, p, t, unit);
+            march_unit_of<K, false, true, CUTS>(m, p, t, unit);
         else
-            march_unit_of<K, SPECIALS, false>(m, p, t, unit);
+            march_unit_of<K, SPECIALS, false, CUTS>(m, p, t, unit);
         __syncthreads();
         if (threadIdx.x == 0)
             tell_done(&m.done[unit], p.number + t.pass);
@@ -511,7 +521,7 @@ template <bool TIPS, bool SPECIALS, class F> static cudaError_t with_kernel(marc
 {
 #define MARCH_ROW(NAME, form, families)                                                                                \
     case NAME:                                                                                                         \
-        return f(march_kernel<NAME, TIPS, (SPECIALS || !march_lean(NAME))>);
+        return f(march_kernel<NAME, TIPS, (SPECIALS || !march_lean(NAME)), false>);
     switch (control) {
         MARCHES(MARCH_ROW)
     default:
@@ -520,14 +530,28 @@ template <bool TIPS, bool SPECIALS, class F> static cudaError_t with_kernel(marc
 #undef MARCH_ROW
 }
 
-template <class F> static cudaError_t with_march(march_control control, bool tips, bool specials, F f)
+/* Likewise of models with cut cells: one for each control that has any, with all that others do without. */
+template <class F> static cudaError_t with_cut_kernel(march_control control, F f)
 {
+#define MARCH_ROW(NAME, form, families)                                                                                \
+    if constexpr (NAME != MARCH_ISOTROPIC)                                                                             \
+        if (control == NAME)                                                                                           \
+            return f(march_kernel<NAME, true, true, true>);
+    MARCHES(MARCH_ROW)
+#undef MARCH_ROW
+    return cudaErrorInvalidValue;
+}
+
+template <class F> static cudaError_t with_march(march_control control, bool tips, bool specials, bool cut, F f)
+{
+    if (cut)
+        return with_cut_kernel(control, f);
     if (tips)
         return specials ? with_kernel<true, true>(control, f) : with_kernel<true, false>(control, f);
     return specials ? with_kernel<false, true>(control, f) : with_kernel<false, false>(control, f);
 }
 
-cudaError_t cuda_march_slots(march_control control, int64_t *slots)
+cudaError_t cuda_march_slots(march_control control, bool cut, int64_t *slots)
 {
     int device = 0, processors = 0, major = 0, least = INT_MAX;
     *slots = 0;
@@ -538,7 +562,7 @@ cudaError_t cuda_march_slots(march_control control, int64_t *slots)
         return e;
     for (int has = 0; e == cudaSuccess && has < 4;
          has++) /* whether there are tips, or special cells, is not known yet */
-        e = with_march(control, has & 1, has & 2, [&](auto kernel) {
+        e = with_march(control, has & 1, has & 2, cut, [&](auto kernel) {
             int each = 0;
             cudaError_t bad = cudaFuncSetAttribute(kernel, cudaFuncAttributeMaxDynamicSharedMemorySize, SHARED);
             bad = bad == cudaSuccess
@@ -555,6 +579,6 @@ cudaError_t cuda_march_start(march_control control, const cuda_march *m, const c
                              cudaStream_t stream)
 {
     const card_blocks how = {blocks, MARCH_THREADS, SHARED, stream};
-    return with_march(control, m->tip != NULL, m->specials > 0,
+    return with_march(control, m->tip != NULL, m->specials > 0, m->cuts > 0,
                       [&](auto kernel) { return card_start(kernel, how, *m, *p); });
 }

@@ -1,7 +1,8 @@
 /* What the march takes of the CUDA executor in single precision: cuda_march.cu. Its state stands node by node, in the
  * march's order: 4 floats each, of which the first three are components along the march's axes: rows, across, march.
  * The fourth of a displacement, and of an internal force, is 1/m; that of a velocity is what move_node needs to know:
- * MARCH_FREE, MARCH_EXTRA, as bits. The view's pointers and these are the card's, borrowed.
+ * MARCH_FREE, MARCH_EXTRA, as bits; where elements are cut, these are the last of a number, which is what gravity acts
+ * on, in parts of the node's mass. The view's pointers and these are the card's, borrowed.
  */
 #ifndef SINEW_CUDA_MARCH_CUH
 #define SINEW_CUDA_MARCH_CUH
@@ -14,8 +15,9 @@ extern "C" {
 }
 
 enum {
-    MARCH_FREE = 0, /* bit MARCH_FREE + a: nothing holds component a */
-    MARCH_EXTRA = 3 /* displaced by the script, or forces act on it */
+    MARCH_FREE = 0,  /* bit MARCH_FREE + a: nothing holds component a */
+    MARCH_EXTRA = 3, /* displaced by the script, or forces act on it */
+    MARCH_BITS = 15  /* all of these */
 };
 
 /* V/V', by which the march's numbers of a law are multiplied under physical control. */
@@ -75,6 +77,8 @@ typedef struct cuda_march {
     int32_t axis[3];         /* of the model: which these are */
     const march_tip *tip;    /* march's; NULL: there are none */
     int32_t tip_first;
+    const march_cut *cut; /* march's, of so many: */
+    int32_t cuts;
 } cuda_march;
 
 /* X(NAME, form, families): what kernels are compiled for, beside whether there are tips: the neo-Hookean form under
@@ -134,10 +138,14 @@ template <march_control K> struct march_kind {
     static constexpr bool CUBES = march_cubes(K);
 };
 
-/* The one that a model takes. families: the most of an element. */
-static inline march_control march_control_of(form which, hourglass_kind kind, const double side[3], int families)
+/* The one that a model takes. families: the most of an element; cut: some elements are cut, of which there are no
+ * kernels under isotropic control. */
+static inline march_control march_control_of(form which, hourglass_kind kind, const double side[3], int families,
+                                             bool cut)
 {
     const bool cubes = kind == HOURGLASS_PHYSICAL && side[0] == side[1] && side[1] == side[2];
+    if (cut && kind == HOURGLASS_ISOTROPIC)
+        return MARCH_CONTROLS;
     for (int k = cubes ? MARCH_CUBES : 0; k < MARCH_CONTROLS; k++)
         if (march_form((march_control)k) == which && march_families((march_control)k) == families &&
             cubes == march_cubes((march_control)k) && (kind == HOURGLASS_ISOTROPIC) == (k == MARCH_ISOTROPIC))
@@ -165,8 +173,8 @@ typedef struct cuda_march_pass {
     uint32_t number, ticket; /* of the first pass, from 1 on; units taken before */
 } cuda_march_pass;
 
-/* Blocks that the card runs at once; 0: it cannot run any, being of before compute capability 9.0. */
-cudaError_t cuda_march_slots(march_control control, int64_t *slots);
+/* Blocks that the card runs at once; 0: it cannot run any, being of before compute capability 9.0. cut: as above. */
+cudaError_t cuda_march_slots(march_control control, bool cut, int64_t *slots);
 
 /* By so many blocks, no more than the card runs at once; each takes one ticket more than there are units in all. */
 cudaError_t cuda_march_start(march_control control, const cuda_march *m, const cuda_march_pass *p, int64_t blocks,

@@ -93,8 +93,23 @@ static __device__ __forceinline__ float third_of(const cuda_march &m, const floa
     return march_kind<K>::CUBES ? m.side[0].thirds * all : all;
 }
 
+/* Adds what the modes of a part have (element_cut.h), to H'. */
+static __device__ __forceinline__ void add_cut(const march_cut &c, const face &low, const face &high, float h[3][3])
+{
+#pragma unroll
+    for (int a = 0; a < 3; a++) {
+        const float xy = low.xy[a] + high.xy[a], xyz = high.xy[a] - low.xy[a];
+        const float yz = high.y[a] - low.y[a], zx = high.x[a] - low.x[a];
+        h[a][0] += c.y * xy + c.z * zx + c.yz * xyz;
+        h[a][1] += c.x * xy + c.z * yz + c.zx * xyz;
+        h[a][2] += c.y * yz + c.x * zx + c.xy * xyz;
+    }
+}
+
+/* cut: of a cut cell; else NULL. */
 template <march_control K>
-static __device__ __forceinline__ stretch stretch_of(const cuda_march &m, bool is, const face &low, const face &high)
+static __device__ __forceinline__ stretch stretch_of(const cuda_march &m, bool is, const face &low, const face &high,
+                                                     const march_cut *cut)
 {
     stretch s;
     float f[3], wide[3];
@@ -104,6 +119,8 @@ static __device__ __forceinline__ stretch stretch_of(const cuda_march &m, bool i
         s.h[a][1] = low.y[a] + high.y[a];
         s.h[a][2] = high.mean[a] - low.mean[a];
     }
+    if (cut)
+        add_cut(*cut, low, high, s.h);
 #pragma unroll
     for (int i = 0; i < 3; i++) {
         f[i] = side_of<K>(m, i).width + s.h[i][i];

@@ -34,25 +34,27 @@ static __device__ __forceinline__ float3 tip_share(const face &f, int corner)
 
 template <march_control K>
 static __device__ __forceinline__ void tip_muscles(const cuda_march &m, const double *now, const march_cell &cell,
-                                                   const face &low, const face &high, face *sum, push<K> *below)
+                                                   const face &low, const face &high, const march_cut *cut, face *sum,
+                                                   push<K> *below)
 {
-    const element_tensor h = gradient_of(m, low, high);
+    const element_tensor h = gradient_by(m, cut, low, high);
     const float peak[2] = {cell.peak, cell.second_peak};
     int32_t curve = cell.muscle[0].curve;
     for (int i = 0; i < 2 && curve >= 0; i++) {
         const march_muscle &muscle = cell.muscle[i];
         const float tension = peak[i] * (float)now[3 * (muscle.curve & ~MARCH_SECOND)];
-        add_tension(m, h, {{muscle.fibre[0], muscle.fibre[1], muscle.fibre[2]}, tension}, sum, below);
+        add_tension(m, h, {{muscle.fibre[0], muscle.fibre[1], muscle.fibre[2]}, tension}, cut, sum, below);
         curve = curve & MARCH_SECOND ? 0 : -1;
     }
 }
 
 /* What a thread's element pulls the tip with, in the march's unit of force. */
-template <march_control K>
+template <march_control K, bool CUTS>
 static __device__ __forceinline__ float3 tip_pull(const cuda_march &m, const double *now, const march_tip &of,
                                                   uint2 along, uint32_t at)
 {
     const face low = tip_face(at, 0), high = tip_face(at, 4);
+    const march_cut *cut = CUTS && of.special && of.special <= m.cuts ? m.cut + of.special - 1 : NULL;
     push<K> below = {};
     face sum;
     if constexpr (K == MARCH_ISOTROPIC) {
@@ -69,20 +71,21 @@ static __device__ __forceinline__ float3 tip_pull(const cuda_march &m, const dou
             special_tissue(m, cell, make_float4(cell.mu, cell.bulk, cell.second, 0), &its);
         }
         its.along = along;
-        cell_forces<K, false>(m, its, true, low, high, &sum, &below);
+        cell_forces<K, false>(m, its, true, low, high, cut, &sum, &below);
     }
     if (of.special)
-        tip_muscles(m, now, m.cell[of.special - 1], low, high, &sum, &below);
+        tip_muscles(m, now, m.cell[of.special - 1], low, high, cut, &sum, &below);
     return tip_share(of.corner < 4 ? sum : face_of(below, high), of.corner);
 }
 
 /* As move_node; n: where it stands; pull: in newtons. */
+template <bool CUTS>
 static __device__ __forceinline__ void move_tip(const cuda_march &m, const cuda_march_pass &p, const turn &t,
                                                 uint32_t n, float4 from, float4 speed, float3 pull)
 {
     const cuda_march_kind &k = p.kind[t.kind];
     const double *now = now_of(p, t);
-    const uint32_t bits = __float_as_uint(speed.w);
+    const uint32_t bits = bits_of<CUTS>(speed.w);
     const tile_extra *x = bits >> MARCH_EXTRA & 1 ? cuda_extra(m.v, (int32_t)n) : NULL;
     const float sum[3] = {pull.x, pull.y, pull.z};
     float u[3] = {from.x, from.y, from.z}, v[3] = {speed.x, speed.y, speed.z};
@@ -96,7 +99,7 @@ static __device__ __forceinline__ void move_tip(const cuda_march &m, const cuda_
             net += (float)cuda_force(m.v, x->force + i - 1, now, axis, (double)u[a]);
         if (bits >> (MARCH_FREE + a) & 1) {
             const float gravity = m.v.gravity < 0 ? 0 : k.push * (float)now[3 * m.v.gravity + axis];
-            v[a] = k.keep * v[a] + gravity + k.push * from.w * net;
+            v[a] = k.keep * v[a] + weight_of<CUTS>(speed.w) * gravity + k.push * from.w * net;
             u[a] += k.dt * v[a];
         } else if (k.what & PASS_BEGIN && x && x->hold[axis] >= 0) {
             const float to = (float)now[p.row + 3 * x->hold[axis] + axis];
@@ -108,7 +111,7 @@ static __device__ __forceinline__ void move_tip(const cuda_march &m, const cuda_
 }
 
 /* `count` tips from t.base on, as a unit. */
-template <march_control K>
+template <march_control K, bool CUTS>
 static __device__ __forceinline__ void move_tips(const cuda_march &m, const cuda_march_pass &p, const turn &t,
                                                  uint32_t unit, int count)
 {
@@ -132,7 +135,7 @@ static __device__ __forceinline__ void move_tips(const cuda_march &m, const cuda
     sent();
     arrived<0>();
     if (of.corner >= 0)
-        pull = tip_pull<K>(m, now_of(p, t), of, along, at);
+        pull = tip_pull<K, CUTS>(m, now_of(p, t), of, along, at);
 #pragma unroll
     for (int with = 1; with < 8; with *= 2) {
         pull.x += __shfl_xor_sync(~0u, pull.x, with);
@@ -140,8 +143,8 @@ static __device__ __forceinline__ void move_tips(const cuda_march &m, const cuda
         pull.z += __shfl_xor_sync(~0u, pull.z, with);
     }
     if (moves)
-        move_tip(m, p, t, n, shared_load(at + (uint32_t)of.corner * TIP_ROW), shared_load(at + TIP_VELOCITY),
-                 {m.force * pull.x, m.force * pull.y, m.force * pull.z});
+        move_tip<CUTS>(m, p, t, n, shared_load(at + (uint32_t)of.corner * TIP_ROW), shared_load(at + TIP_VELOCITY),
+                       {m.force * pull.x, m.force * pull.y, m.force * pull.z});
 }
 
 #endif

@@ -225,7 +225,7 @@ static int resident_passes(cuda_state *s, const cuda_batch *b, err *e)
 /* The kernels that the model takes; families: of the most fibres. */
 static march_control march_control_for(const tled_problem *p, int families)
 {
-    return march_control_of(p->form, p->control.kind, p->side, families);
+    return march_control_of(p->form, p->control.kind, p->side, families, p->cut.count > 0);
 }
 
 /* On a card that can, where the model is suited. */
@@ -235,7 +235,7 @@ static int march_take(cuda_state *s, bool *takes, err *e)
     const march_control control = march_control_for(s->p, march_families_of(s->p));
     if (control == MARCH_CONTROLS)
         return 0;
-    if (CUDA_TRY(cuda_march_slots(control, &slots)))
+    if (CUDA_TRY(cuda_march_slots(control, s->p->cut.count > 0, &slots)))
         return -1;
     if (!slots)
         return 0;
@@ -268,6 +268,7 @@ static void march_list(cuda_state *s, const cuda_numbers *numbers, card_layout *
     card_layout_copy(l, &w->detail, m->detail, m->layers + MARCH_AHEAD);
     card_layout_copy(l, &w->which, m->which, m->details * MARCH_THREADS);
     card_layout_copy(l, &w->cell, m->cell, m->cells);
+    card_layout_copy(l, &w->cut, m->cuts ? m->cut : NULL, m->cuts);
     card_layout_copy(l, &w->tip, m->tip, 8 * m->tips);
     card_layout_copy(l, &w->along, (const uint2 *)m->along, m->families ? march_along_tips(m) + 8 * m->tips : 0);
 }
@@ -346,6 +347,7 @@ static void march_fill(cuda_state *s)
     w->units = (int32_t)s->march.units;
     w->tip_first = s->march.tip_first;
     w->specials = s->march.cells;
+    w->cuts = (int32_t)s->march.cuts;
     w->tip_along = w->along ? w->along + march_along_tips(&s->march) : NULL;
     static_assert(sizeof w->v == sizeof s->view, "views differ by what they point to alone");
     memcpy(&w->v, &s->view, sizeof w->v);
@@ -472,7 +474,6 @@ enum {
 /* The preferred first. What is left takes the last. */
 static const cuda_method cuda_methods[] = {
     {.forms = TILES_FORMS,
-     .fibred = true,
      .take = resident_take,
      .arrange = rows_arrange,
      .list = resident_list,
@@ -483,7 +484,6 @@ static const cuda_method cuda_methods[] = {
      .computed = tiles_computed,
      .end = NULL},
     {.forms = MARCH_FORMS,
-     .fibred = true,
      .take = march_take,
      .arrange = march_arrange,
      .list = march_list,
@@ -494,7 +494,6 @@ static const cuda_method cuda_methods[] = {
      .computed = march_computed,
      .end = march_end},
     {.forms = TILES_FORMS,
-     .fibred = true,
      .take = tiles_take,
      .arrange = rows_arrange,
      .list = tiles_list,
@@ -506,17 +505,12 @@ static const cuda_method cuda_methods[] = {
      .end = NULL},
 };
 
-static bool has_kernels(const cuda_method *m, cuda_wants w)
-{
-    return m->forms >> w.which & 1 && (m->fibred || !w.fibred);
-}
-
 /* The first method that has kernels for the problem and takes it, cut in tiles as it is. */
 static int choose_method(cuda_state *s, err *e)
 {
     for (const cuda_method *m = cuda_methods; !s->method; m++) {
         bool takes = false;
-        if (has_kernels(m, wants_of(s->p)) && m->take(s, &takes, e))
+        if (m->forms >> s->p->form & 1 && m->take(s, &takes, e))
             return -1;
         s->method = takes ? m : NULL;
     }

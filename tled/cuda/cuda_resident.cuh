@@ -112,9 +112,9 @@ static __device__ void hear(const cuda_halo<G> &h, const uint64_t *message, int6
 }
 
 /* One node of the tile in a pass; f: the elements' pull. */
-template <class G>
+template <class G, bool CUT>
 static __device__ void resident_node(const cuda_view<real> &v, const cuda_resident &r, const cuda_pass &p,
-                                     const tile &t, int i, element_vector f, real *grid, own_node *own,
+                                     const tile &t, int i, element_vector f, real *grid, own_node<CUT> *own,
                                      uint64_t *message, uint32_t count)
 {
     const int32_t n = t.node + i;
@@ -143,14 +143,14 @@ static __global__ void __launch_bounds__(G::THREADS, together<G, L>())
     const cuda_list<T::LISTED> list = cuda_list_of<T>(v, blockIdx.x);
     uint32_t first = cell_at(v, t, threadIdx.x);
     const cuda_halo<G> halo = halo_of<G>(v, t);
-    own_node own[G::OWN];
+    own_node<L::CUT> own[G::OWN];
     cuda_pass p = r.pass;
     bring_laws<G>(l, v, &p, near);
     p.now = memory, p.next = memory + 3 * r.curves;
     cuda_load<G, true>(v, t, p.from, u);
 #pragma unroll
     for (int k = 0; k < G::OWN; k++)
-        own[k] = node_at(v, p, t, (int)threadIdx.x + k * G::THREADS);
+        own[k] = node_at<L::CUT>(v, p, t, (int)threadIdx.x + k * G::THREADS);
     for (int32_t k = 0; k < r.passes; k++) {
         const bool last = r.ends && k == r.passes - 1;
         const uint32_t count = r.count + (uint32_t)k;

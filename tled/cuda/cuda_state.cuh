@@ -26,10 +26,10 @@ typedef struct tled_state cuda_state;
 
 /* What the card gets of the problem's numbers. */
 typedef struct cuda_numbers {
-    real *mass_inverse, *law;
+    real *mass_inverse, *weight, *law; /* weight: or NULL */
     cuda_kind *kind;
     cuda_mixed *mixture;
-    cuda_fibres<real> *fibres; /* as, until the struct ends, of models with fibres; else NULL */
+    cuda_fibres<real> *fibres; /* as, until the struct ends, of models with fibres or cut elements; else NULL */
     cuda_fibres<double> *fibres_looked_at;
     real *family, *mixfamily; /* or NULL */
 } cuda_numbers;
@@ -45,7 +45,6 @@ typedef struct cuda_batch {
  * state, or for a batch of passes, and never within a step. They return -1 with e filled. */
 typedef struct cuda_method {
     uint32_t forms; /* that it is compiled for: bit i for form i */
-    bool fibred;    /* it has kernels with fibres */
     /* Whether it takes the problem, which is cut in tiles. */
     int (*take)(cuda_state *s, bool *takes, err *e);
     /* How the arrays of the state stand: s->numbers, and in the view. */
@@ -170,7 +169,10 @@ static int64_t largest_field(const cuda_state *s)
 /* What kernels are chosen by. */
 static cuda_wants wants_of(const tled_problem *p)
 {
-    return {p->form, p->control.kind, p->curved || p->fibres.of};
+    const bool fibred = p->curved || p->fibres.of;
+    if (p->cut.count)
+        return {p->form, p->control.kind, fibred ? CUDA_CUT_FIBRED : CUDA_CUT};
+    return {p->form, p->control.kind, fibred ? CUDA_FIBRED : CUDA_USUAL};
 }
 
 /* Of a law, as kernels read it (cuda_form). */
@@ -202,6 +204,9 @@ static void list_problem(cuda_state *s, const cuda_numbers *numbers, card_layout
     card_layout_copy(l, &s->fibres, numbers->fibres_looked_at, p->volumes);
     card_layout_copy(l, &v->family, numbers->family, 3 * FIBRE_FAMILIES * t->directions);
     card_layout_copy(l, &v->mixfamily, numbers->mixfamily, 3 * FIBRE_FAMILIES * t->directions);
+    card_layout_copy(l, &v->cut, t->cut, t->cells);
+    card_layout_copy(l, &v->moments, p->cut.of, CUT_MOMENTS * p->cut.count);
+    card_layout_copy(l, &v->weight, numbers->weight, t->nodes);
     v->directions = t->directions;
     card_layout_add(l, &v->extra, s->extras);
     card_layout_add(l, &v->force_curve, s->forces);
@@ -317,7 +322,7 @@ static int make_families(cuda_numbers *n, const cuda_state *s, err *e)
 static int make_fibres(cuda_numbers *n, const cuda_state *s, err *e)
 {
     const tled_problem *p = s->p;
-    if (!wants_of(p).fibred)
+    if (wants_of(p).elements == CUDA_USUAL)
         return 0;
     n->fibres = (cuda_fibres<real> *)mem_array(p->volumes, sizeof *n->fibres, "the solver", e);
     n->fibres_looked_at = (cuda_fibres<double> *)mem_array(p->volumes, sizeof *n->fibres_looked_at, "the solver", e);
@@ -328,6 +333,17 @@ static int make_fibres(cuda_numbers *n, const cuda_state *s, err *e)
         n->fibres_looked_at[i] = fibres_of_volume<double>(p, i);
     }
     return make_families(n, s, e);
+}
+
+static int make_weight(cuda_numbers *n, const cuda_state *s, err *e)
+{
+    const tled_problem *p = s->p;
+    if (!p->weight)
+        return 0;
+    n->weight = (real *)mem_array(p->nodes, sizeof *n->weight, "the solver", e);
+    for (int64_t k = 0; n->weight && k < p->nodes; k++)
+        n->weight[k] = (real)tled_weight_part(p, s->tiles.node[k]);
+    return n->weight ? 0 : -1;
 }
 
 static int make_numbers(cuda_numbers *n, const cuda_state *s, err *e)
@@ -342,6 +358,8 @@ static int make_numbers(cuda_numbers *n, const cuda_state *s, err *e)
         return -1;
     for (int64_t k = 0; k < p->nodes; k++)
         n->mass_inverse[k] = (real)(1 / p->mass[s->tiles.node[k]]);
+    if (make_weight(n, s, e))
+        return -1;
     for (int32_t i = 0; i < p->volumes; i++) {
         const tled_volume *v = &p->volume[i];
         real *law = n->law + (int64_t)numbers * i;
@@ -398,6 +416,7 @@ static int put_problem(cuda_state *s, err *e)
     s->view.mixcontractile = s->field[TLED_MIXCONTRACTILE];
 out:
     free(numbers.mass_inverse);
+    free(numbers.weight);
     free(numbers.law);
     free(numbers.kind);
     free(numbers.mixture);

@@ -1,5 +1,5 @@
-/* Sums, the largest and the least over warps and blocks, and a look's answers put together: in one order, whichever
- * ends first. Included by cuda_look.cu alone.
+/* Which cells a tile owns; sums, the largest and the least over warps and blocks, and a look's answers put together: in
+ * one order, whichever ends first. Included by cuda_look.cu alone.
  */
 #ifndef SINEW_CUDA_SUMS_CUH
 #define SINEW_CUDA_SUMS_CUH
@@ -9,6 +9,7 @@
 #include <stdint.h>
 
 extern "C" {
+#include "tled/cuda/tiles.h"
 #include "tled/problem/tled_executor.h"
 }
 
@@ -139,6 +140,48 @@ static __device__ void sum_block(tled_sums mine, bool differences, tled_sums *sc
     for (int i = 1; i < THREADS / 32; i++)
         add_part(&mine, scratch[i]);
     *to = mine;
+}
+
+/* The cells that a tile owns: of each cell and each of its nodes, one. */
+template <class G> struct own_cells {
+    enum { WARPS = G::THREADS / 32, ROUNDS = ((G::BX + 1) * (G::BY + 1) * (G::BZ + 1) + G::THREADS - 1) / G::THREADS };
+    int32_t cell[G::NODES];
+    int32_t count[ROUNDS * WARPS]; /* in each 32 cells */
+};
+
+/* Who of the threads beside this one has one of the tile's own, in each round; their counts go to *to. */
+template <class G>
+static __device__ void count_own(const uint32_t *cell, const tile &t, unsigned *who, own_cells<G> *to)
+{
+    constexpr int ROUNDS = own_cells<G>::ROUNDS, WARPS = own_cells<G>::WARPS;
+    uint32_t mine[ROUNDS];
+#pragma unroll
+    for (int k = 0; k < ROUNDS; k++) {
+        const int i = k * G::THREADS + (int)threadIdx.x;
+        mine[k] = i < t.cells ? cell[t.cell + i] : 0;
+    }
+#pragma unroll
+    for (int k = 0; k < ROUNDS; k++) {
+        who[k] = __ballot_sync(~0u, mine[k] >> TILE_OWN & 1);
+        if (threadIdx.x % 32 == 0)
+            to->count[k * WARPS + threadIdx.x / 32] = __popc(who[k]);
+    }
+}
+
+/* Lists them, in their order, when the counts are there. Returns how many there are. */
+template <class G> static __device__ int list_own(const unsigned *who, own_cells<G> *to)
+{
+    constexpr int ROUNDS = own_cells<G>::ROUNDS, WARPS = own_cells<G>::WARPS;
+    const unsigned warp = threadIdx.x / 32, lane = threadIdx.x % 32;
+    int count = 0;
+#pragma unroll
+    for (int k = 0; k < ROUNDS; k++)
+        for (unsigned w = 0; w < WARPS; w++) {
+            if (w == warp && who[k] >> lane & 1)
+                to->cell[count + __popc(who[k] & ((1u << lane) - 1))] = (int)(k * G::THREADS + threadIdx.x);
+            count += to->count[k * WARPS + w];
+        }
+    return count;
 }
 
 #endif

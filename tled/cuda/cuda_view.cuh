@@ -18,6 +18,7 @@
 
 extern "C" {
 #include "base/mem.h"
+#include "physics/element_cut.h"
 #include "solve/card.h"
 #include "tled/cuda/cuda.h"
 #include "tled/cuda/tiles.h"
@@ -107,7 +108,32 @@ template <class S> struct cuda_view {
     const S *family, *mixfamily;  /* or NULL: no volume has such */
     int64_t directions;
     S *contractile, *mixcontractile; /* cells, which steps move on; or NULL: no muscle has a spring */
+    /* Of models with cut elements (tled/problem/cut.h), else NULL. */
+    const int32_t *cut;   /* cells: which row of moments is its own, or -1 */
+    const float *moments; /* rows of CUT_MOMENTS */
+    const S *weight;      /* nodes: what gravity acts on, in parts of their mass */
 };
+
+/* Whether a cell is cut, and its moments; nothing, in kernels that do not look for it. */
+template <bool CUT> struct cuda_part {
+};
+template <> struct cuda_part<true> {
+    bool is;
+    element_cut c;
+};
+
+template <bool CUT, class S> static __device__ cuda_part<CUT> cuda_part_of(const cuda_view<S> &v, int64_t cell)
+{
+    if constexpr (CUT) {
+        const int32_t row = v.cut[cell];
+        if (row < 0)
+            return {false, {0, 0, 0, 0, 0, 0}};
+        const float *m = v.moments + CUT_MOMENTS * (int64_t)row;
+        return {true, {m[0], m[1], m[2], m[3], m[4], m[5]}};
+    } else {
+        return {};
+    }
+}
 
 /* Where a tile's list begins, or -1; nothing, where no tile is listed. */
 template <bool LISTED> struct cuda_list {

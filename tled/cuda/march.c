@@ -66,6 +66,7 @@ void march_free(march *m)
     free(m->detail);
     free(m->which);
     free(m->cell);
+    free(m->cut);
     free(m->along);
     free(m->tip);
     memset(m, 0, sizeof *m);
@@ -309,7 +310,7 @@ static int mark_special(cutter *c)
     for (int64_t i = 0; i < p->elements; i++) {
         const march_cell cell = march_cell_of(c->m, p, i);
         c->m->curved |= cell.more[0] != 0 || cell.more[1] != 0 || cell.more[2] != 0;
-        for (int k = march_cell_special(c->m, p, &cell) ? cell_spots(c, i, at) : 0; k--;)
+        for (int k = march_cell_special(c->m, p, i, &cell) ? cell_spots(c, i, at) : 0; k--;)
             c->special[at[k].layer] = true;
     }
     return 0;
@@ -399,19 +400,30 @@ static int order_nodes(cutter *c)
     return 0;
 }
 
+/* The number of an element's special cell: those that are cut come first. m->cells: there are so many so far. */
+static int64_t special_number(const cutter *c, int64_t element, int64_t *cuts)
+{
+    const tled_problem *p = c->p;
+    const int64_t others = c->m->cells++ - *cuts;
+    return tled_cut(p, element) ? (*cuts)++ : p->cut.count + others;
+}
+
 /* The special cells: first counted, then, with their arrays made, filled. */
 static void list_special(cutter *c)
 {
     march *m = c->m;
     spot at[SPOTS];
+    int64_t cuts = 0;
     m->cells = 0;
     for (int64_t i = 0; i < c->p->elements; i++) {
         const march_cell cell = march_cell_of(m, c->p, i);
-        if (!march_cell_special(m, c->p, &cell))
+        if (!march_cell_special(m, c->p, i, &cell))
             continue;
-        const int64_t number = m->cells++;
+        const int64_t number = special_number(c, i, &cuts);
         if (m->cell)
             m->cell[number] = cell;
+        if (m->cell && number < m->cuts)
+            m->cut[number] = march_cut_of(m, tled_cut(c->p, i));
         if (c->which)
             c->which[i] = (int32_t)number + 1;
         for (int k = cell_spots(c, i, at); k--;) {
@@ -436,8 +448,10 @@ static int put_special(cutter *c)
     memset(m->detail, 0xff, (size_t)(m->layers + MARCH_AHEAD) * sizeof *m->detail);
     list_special(c);
     m->which = mem_array(m->details, MARCH_THREADS * sizeof *m->which, "the march", c->e);
+    m->cuts = c->p->cut.count;
+    m->cut = mem_array(m->cuts, sizeof *m->cut, "the march", c->e);
     m->cell = mem_array(m->cells, sizeof *m->cell, "the march", c->e);
-    if (!m->which || !m->cell)
+    if (!m->which || !m->cut || !m->cell)
         return -1;
     if (m->cells)
         list_special(c);

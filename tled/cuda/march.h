@@ -64,6 +64,12 @@ typedef struct march_cell {
     float family[4]; /* of fibres that resist being stretched: k1, k2, kappa, angle (rad) */
 } march_cell;
 
+/* What a cut cell has besides (element_cut.h): means over its part of the coordinates along the march's axes, -1 to 1,
+ * and of the products of the first and second, second and third, third and first. */
+typedef struct march_cut {
+    float x, y, z, xy, yz, zx;
+} march_cut;
+
 /* An element of a tip. */
 typedef struct march_tip {
     int32_t node[8]; /* where its corners stand: of the lower face, then of the upper; along rows first */
@@ -85,6 +91,8 @@ typedef struct march {
     int32_t *detail;  /* layers + MARCH_AHEAD: where its special cells stand in `which`, in layers; or -1 */
     int32_t *which;   /* details x MARCH_THREADS: in cell, from 1 on; 0: none */
     march_cell *cell;
+    march_cut *cut; /* cuts: of the first of these cells, which are the cut ones */
+    int64_t cuts;
     bool curved;     /* some cell has a `more` that is not 0, or would have it if it were special */
     int families;    /* of fibres that resist being stretched, the most of a cell */
     uint32_t *along; /* ((layers + MARCH_AHEAD) x MARCH_THREADS + tips x 8) x 2: the directions of cells' and of

@@ -74,13 +74,21 @@ march_cell march_cell_of(const march *m, const tled_problem *p, int64_t element)
     return cell;
 }
 
-bool march_cell_special(const march *m, const tled_problem *p, const march_cell *cell)
+march_cut march_cut_of(const march *m, const float *moments)
+{
+    const float *products = moments + 3; /* of the axes but 2, but 0, but 1 */
+    const int32_t but[3] = {1, 2, 0}, *axis = m->axis;
+    return (march_cut){moments[axis[0]],       moments[axis[1]],       moments[axis[2]],
+                       products[but[axis[2]]], products[but[axis[0]]], products[but[axis[1]]]};
+}
+
+bool march_cell_special(const march *m, const tled_problem *p, int64_t element, const march_cell *cell)
 {
     march_cell plain = {.muscle = {{.curve = -1}, {.curve = -1}}};
     put_law(p, &p->volume[m->plain].law, 1, &plain);
     if (p->fibres.of)
         put_family(m, &p->fibres.of[m->plain], 1, &plain);
-    return cell->muscle[0].curve >= 0 || cell->mu != plain.mu || cell->bulk != plain.bulk ||
+    return tled_cut(p, element) || cell->muscle[0].curve >= 0 || cell->mu != plain.mu || cell->bulk != plain.bulk ||
            cell->second != plain.second || memcmp(cell->more, plain.more, sizeof plain.more) != 0 ||
            memcmp(cell->family, plain.family, sizeof plain.family) != 0;
 }

@@ -4,9 +4,12 @@
 
 #include "tled/cuda/march.h"
 
-/* Of an element, if it were special; and whether it has to be, as it is not of the plain law or may contract. */
+/* Of an element, if it were special; and whether it has to be: it is not of the plain law, may contract or is cut. */
 march_cell march_cell_of(const march *m, const tled_problem *p, int64_t element);
-bool march_cell_special(const march *m, const tled_problem *p, const march_cell *cell);
+bool march_cell_special(const march *m, const tled_problem *p, int64_t element, const march_cell *cell);
+
+/* What a cut element has besides. */
+march_cut march_cut_of(const march *m, const float *moments);
 
 /* The most families of fibres of an element. -1: a march has no such fibres, as there are those of the second volume of
  * an element, those of the law fung, or muscles with curves of their own. */

@@ -40,6 +40,7 @@ void tiles_free(tiles *t)
     free(t->fibre);
     free(t->share);
     free(t->mixed);
+    free(t->cut);
     free(t->mixfibre);
     free(t->extra);
     memset(t, 0, sizeof *t);
@@ -301,9 +302,10 @@ static int make_cell_lists(cutter *c)
     t->fibre = mem_array(t->directions, 3 * sizeof *t->fibre, "the tiles", c->e);
     t->share = p->fraction ? mem_array(t->cells, sizeof *t->share, "the tiles", c->e) : NULL;
     t->mixed = p->mixed ? mem_array(t->cells, sizeof *t->mixed, "the tiles", c->e) : NULL;
+    t->cut = p->cut.count ? mem_array(t->cells, sizeof *t->cut, "the tiles", c->e) : NULL;
     t->mixfibre = p->mixfibre ? mem_array(t->directions, 3 * sizeof *t->mixfibre, "the tiles", c->e) : NULL;
     return t->cell && t->cell_element && t->fibre && (t->share || !p->fraction) && (t->mixed || !p->mixed) &&
-                   (t->mixfibre || !p->mixfibre)
+                   (t->cut || !p->cut.count) && (t->mixfibre || !p->mixfibre)
                ? 0
                : -1;
 }
@@ -350,6 +352,8 @@ static void put_cell(cutter *c, int64_t which, int64_t at, int32_t place)
         t->share[at] = c->p->fraction[element];
     if (t->mixed)
         t->mixed[at] = c->p->mixed[element];
+    if (t->cut)
+        t->cut[at] = (int32_t)cut_moments_row(&c->p->cut, element);
     t->cell[at] = (uint32_t)place | own << TILE_OWN | (uint32_t)c->p->element_volume[element] << TILE_VOLUME;
 }
 

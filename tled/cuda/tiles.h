@@ -78,6 +78,7 @@ typedef struct tiles {
     float *fibre;          /* directions x 3 */
     float *share;          /* cells: the problem's fraction; NULL where that is */
     int32_t *mixed;        /* cells: the problem's; NULL where that is */
+    int32_t *cut;          /* cells: which of the problem's cut elements each is, or -1; NULL: none is */
     float *mixfibre;       /* directions x 3: of cells' second volumes; or NULL */
     tile_extra *extra;     /* extras, by where their nodes stand */
 } tiles;

@@ -54,24 +54,18 @@ int cut_weigh(tled_problem *p, err *e)
     return p->weight ? 0 : -1;
 }
 
-/* What forces go by over what mass does. */
-static double lighter(const tled_problem *p, int64_t element)
-{
-    return tled_fraction(p, element) / cut_inertia(p, element);
-}
-
 void cut_matrix(const tled_problem *p, int64_t element, const float *moments, step_matrix *a)
 {
-    stability_cut_matrix(element_cut_of(moments), lighter(p, element), a);
+    stability_cut_matrix(element_cut_of(moments), cut_lighter(tled_fraction(p, element)), a);
 }
 
 stability_twists cut_twists(const tled_problem *p, int64_t element, const float *moments, stability_twists whole)
 {
-    return stability_cut_twists(element_cut_of(moments), lighter(p, element), whole);
+    return stability_cut_twists(element_cut_of(moments), cut_lighter(tled_fraction(p, element)), whole);
 }
 
 double cut_raises(const tled_problem *p, int64_t element, const float *moments)
 {
     const stability_gram g = stability_gram_of(element_cut_of(moments));
-    return lighter(p, element) * stability_gram_bound(&g);
+    return cut_lighter(tled_fraction(p, element)) * stability_gram_bound(&g);
 }

@@ -17,6 +17,12 @@
 /* By what part of a whole box's mass an element moves: its share; if it is cut, at least CUT_LEAST. */
 double cut_inertia(const tled_problem *p, int64_t element);
 
+/* What the forces of such an element go by over what its mass does. */
+ELEMENT_FUNCTION double cut_lighter(double share)
+{
+    return share < CUT_LEAST ? share / CUT_LEAST : 1;
+}
+
 /* Makes p->cut and, where any element is cut, p->weight; the latter needs the laws. -1 with e filled. */
 int cut_borrow(tled_problem *p, const model *m, err *e);
 int cut_weigh(tled_problem *p, err *e);

@@ -148,6 +148,12 @@ static inline double tled_weight(const tled_problem *p, int64_t node)
     return p->weight ? p->weight[node] : p->mass[node];
 }
 
+/* The same in parts of the node's mass. */
+static inline double tled_weight_part(const tled_problem *p, int64_t node)
+{
+    return tled_weight(p, node) / p->mass[node];
+}
+
 /* The second volume of an element, or -1. */
 static inline int32_t tled_mix(const tled_problem *p, int64_t element)
 {
