@@ -60,7 +60,7 @@ static const opt option_list[] = {
     {OPT_ACTION, 0, "least", "SHARE", OPT_NUMBER, TO(least), 0, 1, NULL, 0,
      "smallest share that makes an element [default any]"},
     {OPT_ACTION, 0, "strain", "enclosed|centre", OPT_CHOICE, TO(strain), 0, 0, "enclosed|centre", 0,
-     "where the strain of a partly enclosed voxel is taken [default centre]"},
+     "where the strain of a partly enclosed voxel is taken [default enclosed]"},
     {OPT_ACTION, 0, "slits", "on|off", OPT_CHOICE, TO(slits), 0, 0, "on|off", 0,
      "part what a surface lies between [default on with --fraction or --layers]"},
     {OPT_INPUT, 0, "allow-open", NULL, OPT_FLAG, TO(allow_open), 0, 0, NULL, 0, "accept open surfaces, with a warning"},
@@ -290,7 +290,7 @@ static int look_inside(job *j, const grid *samples, const shares_rule *rule, err
 
 static bool takes_moments(const struct options *o)
 {
-    return o->fraction > 0 && o->strain == STRAIN_ENCLOSED;
+    return o->fraction > 0 && o->strain != STRAIN_CENTRE;
 }
 
 static int find_voxels(job *j, err *e)
