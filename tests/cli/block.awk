@@ -2,9 +2,27 @@
 #   held    low: nodes at x = 0 are rigid, of surface skull_left; top: those of the highest z, of skull_top; else none
 #   muscle  1: it is one volume muscle_all, fibres along x; else skin
 #   E nu    of its material, tissue (default 3000, 0.45)
+#   cut     of which elements only the lower half is enclosed: sides, those at all sides but x = 0; all; else none
+#   moments 1: their strain is the mean over that half
 function column(name, type, unit, value) {
     print "array " name " " type " " unit " " substr(name, 1, index(name, ".") - 1) " 1"
     print value
+}
+function is_cut(i, j, k) {
+    return cut == "all" || (cut == "sides" && (i == nx - 1 || j == 0 || j == ny - 1 || k == 0 || k == nz - 1))
+}
+function shares() {
+    print "array element.fraction f32 1 element 1"
+    for (k = 0; k < nz; k++) for (j = 0; j < ny; j++) for (i = 0; i < nx; i++) {
+        print is_cut(i, j, k) ? .5 : 1
+        if (is_cut(i, j, k)) number[cuts++] = i + nx * (j + ny * k)
+    }
+    if (!moments) return
+    print "axis cut " cuts
+    print "array cut.element i32 @element cut 1"
+    for (n = 0; n < cuts; n++) print number[n]
+    print "array cut.moments f32 1 cut 7"
+    for (n = 0; n < cuts; n++) print "0 0 -.5 0 0 0 0"
 }
 BEGIN {
     if (E == "") E = 3000
@@ -40,6 +58,7 @@ BEGIN {
         print "array element.fibre f32 1 element 3"
         for (n = 0; n < elements; n++) print "1 0 0"
     }
+    if (cut) shares()
     column("volume.name", "str", "1", muscle ? "\"muscle_all\"" : "\"skin\"")
     column("volume.level", "i32", "1", 0)
     column("volume.priority", "i32", "1", 0)

@@ -6,6 +6,7 @@
 
 awk -v nx=12 -v ny=9 -v nz=7 -v h=0.005 -v held=low -f tests/cli/block.awk >"$T/block.sinew"
 awk -v nx=12 -v ny=6 -v nz=5 -v h=0.0025 -v held=low -v muscle=1 -f tests/cli/block.awk >"$T/muscle.sinew"
+awk -v nx=12 -v ny=6 -v nz=5 -v h=0.0025 -v held=low -v muscle=1 -v cut=sides -v moments=1 -f tests/cli/block.awk >"$T/cut.sinew"
 run() { # FILE ARG...
     from=$1
     shift
@@ -56,6 +57,10 @@ cat >"$T/script" <<'SCRIPT'
 SCRIPT
 same "a script" "$T/block.sinew" --script "$T/script"
 same "a muscle" "$T/muscle.sinew" -c all=0.5 -g 0,0,-9.81
+same "cut elements" "$T/cut.sinew" -c all=0.5 -g 0,0,-9.81
+run "$T/cut.sinew" -q -d cpu -n 500 -c all=0.1 -g 0,0,-9.81 >"$T/cpu"
+run "$T/cut.sinew" -q -d cuda -n 500 -c all=0.1 -g 0,0,-9.81 >"$T/cuda"
+check "and the CPU's bytes" sinew diff --only node.displacement,node.velocity "$T/cpu" "$T/cuda"
 logged() { # NAME ARG...: the CPU's log in columns 1 to 13, and how many elements of muscles fall
     name=$1
     shift
