@@ -311,16 +311,6 @@ ELEMENT_FUNCTION element_field element_force_from(hourglass_kind kind, element_f
     return element_force_of(kind, p, &held, shape);
 }
 
-/* As element_force_fibred, by a law that is that at u already (element_follow). */
-ELEMENT_FUNCTION element_field element_force_by(form f, hourglass_kind kind, element_field u, element_shape shape,
-                                                element_law law, element_fibre fibre, int which, element_fibre second,
-                                                int which_second, const fibre_set *sets, int count)
-{
-    const element_tensor p =
-        element_stress(f, element_gradient_to(u, shape.slope), law.c, fibre, which, second, which_second, sets, count);
-    return element_force_from(kind, u, p, shape, law.hourglass);
-}
-
 /* As element_force, with a second fibre, and what resists being stretched of `count` volumes, none to two. */
 ELEMENT_FUNCTION element_field element_force_fibred(form f, hourglass_kind kind, element_field u, element_shape shape,
                                                     element_law law, element_fibre fibre, int which,

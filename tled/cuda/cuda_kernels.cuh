@@ -76,7 +76,7 @@ static __device__ int follow(const L &l, const cuda_pass &p, const real *u, cons
     return unknown(place);
 }
 
-/* As element_force_by, of a cell that may be cut and has no fibres that resist being stretched. */
+/* As element_force_of_two, of a cell that may be cut, by a law that is that at u already (element_follow). */
 template <class L>
 static __device__ element_field force_by(const L &l, element_field u, element_shape shape, element_law law,
                                          element_fibre fibre, bool pulls, element_fibre second, bool second_pulls,
