@@ -6,12 +6,19 @@
  * and with G = L L^T the law's frequencies are those of L^T A L, A the matrix of the whole box (step.h). Forces go by
  * the part's share and mass by its inertia, which is no less: `by` is the one over the other. What hourglass modes add
  * (stability.h) is no longer apart from the law's, as both move these modes: the largest eigenvalue of the sum is at
- * most the sum of the largest, and |dF|^2 at most |G| times what it is of the slopes alone. In double. Owns nothing. */
+ * most the sum of the largest, and |dF|^2 at most |G| times what it is of the slopes alone. In double. Owns nothing.
+ *
+ * What fills less than CUT_LEAST of its box has the mass of so much. Of all shapes that fill a given share, a corner cut
+ * off by a plane has the smallest step: found by taking, again and again, the part of the box where the bound's slope
+ * by the six moments is highest. With a CUT_LEAST of .03 the bound gives .607 of a whole cube's step at nu .3; with
+ * .02 .584, where the true step is .595. */
 #ifndef SINEW_STABILITY_CUT_H
 #define SINEW_STABILITY_CUT_H
 
 #include "physics/element_cut.h"
 #include "physics/stability.h"
+
+#define CUT_LEAST .03
 
 typedef struct stability_gram {
     double at[3][3];

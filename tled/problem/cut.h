@@ -4,15 +4,13 @@
  *     N_a = (1 + x_a x + ... + x_a y_a xy + ... + x_a y_a z_a xyz)/8,
  * x_a, y_a and z_a the signs of corner a. Each corner has an eighth of the mass, by the share: mass by these weights
  * would leave some nodes with next to none, and no step would be stable. What fills less than CUT_LEAST of its box has
- * the mass of so much, as a probe and pressures push nodes. Owns nothing but what the problem does.
+ * the mass of so much, for the stable step (stability_cut.h), and as a probe and pressures push nodes. Owns nothing but what the problem does.
  */
 #ifndef SINEW_CUT_H
 #define SINEW_CUT_H
 
 #include "physics/stability_cut.h"
 #include "tled/problem/state.h"
-
-#define CUT_LEAST .02
 
 /* By what part of a whole box's mass an element moves: its share; if it is cut, at least CUT_LEAST. */
 double cut_inertia(const tled_problem *p, int64_t element);
