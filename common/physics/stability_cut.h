@@ -8,7 +8,7 @@
  * (stability.h) is no longer apart from the law's, as both move these modes: the largest eigenvalue of the sum is at
  * most the sum of the largest, and |dF|^2 at most |G| times what it is of the slopes alone. In double. Owns nothing.
  *
- * What fills less than CUT_LEAST of its box has the mass of so much. Of all shapes that fill a given share, a corner cut
+ * What fills less than CUT_LEAST of its box has the mass of so much. Of all shapes of a given share, a corner cut
  * off by a plane has the smallest step: found by taking, again and again, the part of the box where the bound's slope
  * by the six moments is highest. With a CUT_LEAST of .03 the bound gives .607 of a whole cube's step at nu .3; with
  * .02 .584, where the true step is .595. */

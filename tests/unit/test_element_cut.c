@@ -4,11 +4,10 @@
 #include "mesh/lattice.h"
 #include "physics/stability_cut.h"
 
+#include "box_square.h"
 #include "cut_part.h"
 #include "form_tried.h"
 #include "tap.h"
-
-enum { FREEDOMS = 24 };
 
 static const double box_side[3] = {.01, .0125, .02}, mu = 3000 / 2.9, bulk = 10000;
 
@@ -71,20 +70,15 @@ static element_field forces(form f, hourglass_control control, element_field u, 
                              ELEMENT_NO_MUSCLE, NULL, 0, c);
 }
 
-static double *component(element_field *f, int corner, int axis)
-{
-    return axis == 0 ? &f->x.at[corner] : axis == 1 ? &f->y.at[corner] : &f->z.at[corner];
-}
-
 /* (F - 1) x at the corners of a box at `origin`. */
 static element_field affine(double f[3][3], const double origin[3])
 {
     element_field u;
-    for (int i = 0; i < FREEDOMS; i++) {
+    for (int i = 0; i < BOX_FREEDOMS; i++) {
         double x[3];
         for (int a = 0; a < 3; a++)
             x[a] = origin[a] + box_side[a] * lattice_vtk[i / 3][a];
-        *component(&u, i / 3, i % 3) = part_dot(f[i % 3], x) - x[i % 3];
+        *box_component(&u, i / 3, i % 3) = part_dot(f[i % 3], x) - x[i % 3];
     }
     return u;
 }
@@ -121,7 +115,7 @@ static double out_of_balance(const part *p, double f[3][3], double share, elemen
     element_field got = forces(FORM_NEO_HOOKEAN, control, affine(f, origin), share, c);
     tractions(p, form_stress(FORM_NEO_HOOKEAN, h, law_of(1, control, FORM_NEO_HOOKEAN).c), want);
     for (int i = 0; i < 24; i++) {
-        worst = fmax(worst, fabs(*component(&got, i / 3, i % 3) - want[i / 3][i % 3]));
+        worst = fmax(worst, fabs(*box_component(&got, i / 3, i % 3) - want[i / 3][i % 3]));
         scale = fmax(scale, fabs(want[i / 3][i % 3]));
     }
     return worst / scale;
@@ -153,7 +147,7 @@ static element_field bent(double strain)
 {
     element_field u;
     for (int i = 0; i < 24; i++)
-        *component(&u, i / 3, i % 3) = strain * box_side[i % 3] * number();
+        *box_component(&u, i / 3, i % 3) = strain * box_side[i % 3] * number();
     return u;
 }
 
@@ -179,13 +173,13 @@ static void test_energy(form f, hourglass_control control)
         const element_cut c = element_cut_of(moments);
         const element_field u = bent(.15);
         element_field got = forces(f, control, u, share, c);
-        for (int k = 0; k < FREEDOMS; k++) {
+        for (int k = 0; k < BOX_FREEDOMS; k++) {
             const double step = 1e-6 * box_side[0];
             element_field high = u, low = u;
-            *component(&high, k / 3, k % 3) += step;
-            *component(&low, k / 3, k % 3) -= step;
+            *box_component(&high, k / 3, k % 3) += step;
+            *box_component(&low, k / 3, k % 3) -= step;
             const double slope = (energy(f, control, high, share, c) - energy(f, control, low, share, c)) / (2 * step);
-            off = fmax(off, fabs(slope - *component(&got, k / 3, k % 3)));
+            off = fmax(off, fabs(slope - *box_component(&got, k / 3, k % 3)));
             scale = fmax(scale, fabs(slope));
         }
         worst = fmax(worst, off / scale);
@@ -200,8 +194,8 @@ static void test_turn(hourglass_control control)
     double share;
     part_by_chance(2, moments, &share);
     element_field got = forces(FORM_NEO_HOOKEAN, control, affine(turn, box_side), share, element_cut_of(moments));
-    for (int k = 0; k < FREEDOMS; k++)
-        worst = fmax(worst, fabs(*component(&got, k / 3, k % 3)));
+    for (int k = 0; k < BOX_FREEDOMS; k++)
+        worst = fmax(worst, fabs(*box_component(&got, k / 3, k % 3)));
     near_(worst / (mu * box_side[0] * box_side[1]), 0, 1e-12, "a turn gives no forces");
 }
 
@@ -223,49 +217,23 @@ static void test_whole(hourglass_control control)
 
 /* ---- the stable step */
 
-/* The largest eigenvalue of a symmetric matrix, by Jacobi's rotations. */
-static double largest_of(double a[FREEDOMS][FREEDOMS])
+typedef struct cut_box {
+    form f;
+    hourglass_control control;
+    element_cut c;
+} cut_box;
+
+static element_field box_forces(const void *of, element_field u)
 {
-    for (int sweep = 0; sweep < 12; sweep++)
-        for (int p = 0; p < FREEDOMS; p++)
-            for (int q = p + 1; q < FREEDOMS; q++) {
-                if (a[p][q] == 0)
-                    continue;
-                const double theta = (a[q][q] - a[p][p]) / (2 * a[p][q]);
-                const double t = copysign(1, theta) / (fabs(theta) + sqrt(theta * theta + 1));
-                const double c = 1 / sqrt(t * t + 1), s = t * c;
-                for (int k = 0; k < FREEDOMS; k++) {
-                    const double x = a[k][p], y = a[k][q];
-                    a[k][p] = c * x - s * y, a[k][q] = s * x + c * y;
-                }
-                for (int k = 0; k < FREEDOMS; k++) {
-                    const double x = a[p][k], y = a[q][k];
-                    a[p][k] = c * x - s * y, a[q][k] = s * x + c * y;
-                }
-            }
-    double most = 0;
-    for (int i = 0; i < FREEDOMS; i++)
-        most = fmax(most, a[i][i]);
-    return most;
+    const cut_box *b = of;
+    return forces(b->f, b->control, u, 1, b->c);
 }
 
 /* Of the box alone, all of its corners of the same mass: differences of its forces. */
 static double true_square(form f, hourglass_control control, element_field u, element_cut c, double density)
 {
-    static double k[FREEDOMS][FREEDOMS];
-    const double step = 1e-5 * box_side[0], mass = density * box_volume() / 8;
-    for (int i = 0; i < FREEDOMS; i++) {
-        element_field high = u, low = u;
-        *component(&high, i / 3, i % 3) += step;
-        *component(&low, i / 3, i % 3) -= step;
-        element_field a = forces(f, control, high, 1, c), b = forces(f, control, low, 1, c);
-        for (int j = 0; j < FREEDOMS; j++)
-            k[j][i] = (*component(&a, j / 3, j % 3) - *component(&b, j / 3, j % 3)) / (2 * step * mass);
-    }
-    for (int i = 0; i < FREEDOMS; i++)
-        for (int j = 0; j < i; j++)
-            k[i][j] = k[j][i] = (k[i][j] + k[j][i]) / 2;
-    return largest_of(k);
+    const cut_box of = {f, control, c};
+    return box_square(box_forces, &of, u, 1e-5 * box_side[0], density * box_volume() / 8);
 }
 
 /* As monitors find it. */

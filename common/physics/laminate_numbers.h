@@ -1,0 +1,9 @@
+/* What is known of the border in an element that is a laminate of two volumes (element_laminate.h), as numbers: the
+ * normal, the second part's moments, the kink's hourglass modes. Owns nothing.
+ */
+#ifndef SINEW_LAMINATE_NUMBERS_H
+#define SINEW_LAMINATE_NUMBERS_H
+
+enum { LAMINATE_NORMAL = 0, LAMINATE_SECOND = 3, LAMINATE_KINK = 9, LAMINATE_NUMBERS = 13 };
+
+#endif
