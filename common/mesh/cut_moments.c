@@ -1,11 +1,16 @@
 #include "mesh/cut_moments.h"
 
-static int check_order(const cut_moments *of, err *e)
+#include "mesh/lattice.h"
+
+#include <math.h>
+
+/* name: of the list. */
+static int check_order(const int32_t *list, int64_t count, const char *name, err *e)
 {
-    for (int64_t i = 1; i < of->count; i++)
-        if (of->element[i] <= of->element[i - 1])
-            return err_set(e, NULL, 0, "cut.element, row %lld is %d after %d; expected ascending numbers", (long long)i,
-                           (int)of->element[i], (int)of->element[i - 1]);
+    for (int64_t i = 1; i < count; i++)
+        if (list[i] <= list[i - 1])
+            return err_set(e, NULL, 0, "%s, row %lld is %d after %d; expected ascending numbers", name, (long long)i,
+                           (int)list[i], (int)list[i - 1]);
     return 0;
 }
 
@@ -18,24 +23,131 @@ int cut_moments_of(cut_moments *to, const model *m, err *e)
     if (!model_need(m, "cut.element", e) || !model_need(m, "cut.moments", e) || !model_need(m, "element.fraction", e))
         return -1;
     *to = (cut_moments){element->i32, moments->f32, element->rows};
-    return check_order(to, e);
+    return check_order(to->element, to->count, "cut.element", e);
 }
 
-int64_t cut_moments_row(const cut_moments *of, int64_t element)
+/* Where an element is in an ascending list; -1: nowhere. */
+static int64_t find(const int32_t *list, int64_t count, int64_t element)
 {
-    int64_t low = 0, high = of->count;
+    int64_t low = 0, high = count;
     while (low < high) {
         const int64_t middle = low + (high - low) / 2;
-        if (of->element[middle] < element)
+        if (list[middle] < element)
             low = middle + 1;
         else
             high = middle;
     }
-    return low < of->count && of->element[low] == element ? low : -1;
+    return low < count && list[low] == element ? low : -1;
+}
+
+int64_t cut_moments_row(const cut_moments *of, int64_t element)
+{
+    return find(of->element, of->count, element);
 }
 
 const float *cut_moments_at(const cut_moments *of, int64_t element)
 {
     const int64_t row = cut_moments_row(of, element);
     return row < 0 ? NULL : of->of + CUT_MOMENTS * row;
+}
+
+/* ---- borders */
+
+static int check_rows(const borders *of, const model *m, err *e)
+{
+    const int32_t *mix = model_find(m, "element.mix")->i32;
+    const float *mixture = model_find(m, "element.mixture")->f32;
+    const model_array *fraction = model_find(m, "element.fraction");
+    for (int64_t i = 0; i < of->count; i++) {
+        const int32_t element = of->element[i];
+        const float *n = of->normal + 3 * i;
+        if (mix[element] < 0 || !(mixture[element] > 0 && mixture[element] < 1))
+            return err_set(e, NULL, 0,
+                           "border.element, row %lld: element %d is not mixed of two volumes; expected a mixed element",
+                           (long long)i, (int)element);
+        if (fraction && fraction->f32[element] != 1)
+            return err_set(
+                e, NULL, 0,
+                "border.element, row %lld: element %d has element.fraction %g; expected 1, as of elements that "
+                "are enclosed wholly",
+                (long long)i, (int)element, (double)fraction->f32[element]);
+        if (n[0] == 0 && n[1] == 0 && n[2] == 0)
+            return err_set(e, NULL, 0, "border.normal, row %lld is 0 0 0; expected a direction", (long long)i);
+    }
+    return 0;
+}
+
+int borders_of(borders *to, const model *m, err *e)
+{
+    static const char *const name[] = {"border.element", "border.normal",   "border.moments",
+                                       "element.mix",    "element.mixture", "element.lattice"};
+    *to = (borders){.count = 0};
+    if (!model_find(m, name[0]) && !model_find(m, name[1]) && !model_find(m, name[2]))
+        return 0;
+    for (int i = 0; i < (int)(sizeof name / sizeof *name); i++)
+        if (!model_need(m, name[i], e))
+            return -1;
+    *to = (borders){model_find(m, name[0])->i32, model_find(m, name[1])->f32, model_find(m, name[2])->f32,
+                    model_find(m, name[0])->rows};
+    return check_order(to->element, to->count, name[0], e) ? -1 : check_rows(to, m, e);
+}
+
+int64_t borders_at(const borders *of, int64_t element)
+{
+    return find(of->element, of->count, element);
+}
+
+/* The share of a box where a.x <= t, x from 0 to 1 along each side, a above 0. */
+static double share_below(const double a[3], double t)
+{
+    double sum = 0;
+    for (int s = 0; s < 8; s++) {
+        const double left = t - (s & 1 ? a[0] : 0) - (s & 2 ? a[1] : 0) - (s & 4 ? a[2] : 0);
+        const int sign = (s & 1) ^ (s >> 1 & 1) ^ (s >> 2 & 1) ? -1 : 1;
+        sum += left > 0 ? sign * left * left * left : 0;
+    }
+    return sum / (6 * a[0] * a[1] * a[2]);
+}
+
+/* d of the plane m.x = d, x from -1 to 1, beyond which lies this share. */
+static double place_of(const double m[3], double share)
+{
+    double a[3], all = 0, most = fmax(fabs(m[0]), fmax(fabs(m[1]), fabs(m[2])));
+    for (int i = 0; i < 3; i++) {
+        a[i] = 2 * fmax(fabs(m[i]), 1e-3 * most);
+        all += a[i];
+    }
+    double low = 0, high = all;
+    for (int i = 0; i < 50; i++) {
+        const double middle = (low + high) / 2;
+        if (share_below(a, middle) < 1 - share)
+            low = middle;
+        else
+            high = middle;
+    }
+    return low - all / 2;
+}
+
+void borders_numbers(const borders *of, int64_t row, const double side[3], double share, double *to)
+{
+    const float *n = of->normal + 3 * row;
+    double m[3], length = 0;
+    for (int a = 0; a < 3; a++)
+        length += (double)n[a] * (double)n[a];
+    for (int a = 0; a < 3; a++) {
+        to[LAMINATE_NORMAL + a] = (double)n[a] / sqrt(length);
+        m[a] = to[LAMINATE_NORMAL + a] * side[a] / 2;
+    }
+    for (int k = 0; k < BORDER_MOMENTS; k++)
+        to[LAMINATE_SECOND + k] = (double)of->moments[BORDER_MOMENTS * row + k];
+    const double d = place_of(m, share);
+    for (int k = 0; k < 4; k++)
+        to[LAMINATE_KINK + k] = 0;
+    for (int c = 0; c < 8; c++) {
+        const int x = 2 * lattice_vtk[c][0] - 1, y = 2 * lattice_vtk[c][1] - 1, z = 2 * lattice_vtk[c][2] - 1;
+        const int mode[4] = {x * y, y * z, z * x, x * y * z};
+        const double kink = fmax(0, m[0] * x + m[1] * y + m[2] * z - d);
+        for (int k = 0; k < 4; k++)
+            to[LAMINATE_KINK + k] += mode[k] * kink;
+    }
 }

@@ -4,6 +4,7 @@
 #include "mesh/hexahedron.h"
 #include "mesh/lattice.h"
 #include "physics/element_cut.h"
+#include "physics/hourglass_numbers.h"
 
 #include <string.h>
 
@@ -15,7 +16,7 @@ int element_mesh_of(element_mesh *to, const model *m, err *e)
         return -1;
     *to = (element_mesh){.node = node->i32, .corners = node->columns, .elements = node->rows, .rest = rest->f64};
     to->is_lattice = node->columns == 8 && model_meta_of(m, "lattice.spacing");
-    if (to->is_lattice && (lattice_of(m, &l, e) || cut_moments_of(&to->cut, m, e)))
+    if (to->is_lattice && (lattice_of(m, &l, e) || cut_moments_of(&to->cut, m, e) || borders_of(&to->borders, m, e)))
         return -1;
     memcpy(to->side, l.spacing, sizeof to->side);
     return 0;
@@ -53,6 +54,7 @@ static element_motion of_hexahedron(const element_mesh *m, const int32_t *node, 
         to.squares = hourglass_squares(m->side);
         const element_vector slope = element_box(m->side[0], m->side[1], m->side[2]).slope;
         to.h = element_gradient_by(cut, x, y, z, slope);
+        to.along[0] = x, to.along[1] = y, to.along[2] = z;
     } else {
         to.any = shape_of(m, node, &to.squares);
         to.volume = to.any.volume;
@@ -80,4 +82,49 @@ element_motion element_motion_of(const element_mesh *m, int64_t element, const d
     const int32_t *node = m->node + element * m->corners;
     const float *cut = m->cut.count ? cut_moments_at(&m->cut, element) : NULL;
     return m->corners == 8 ? of_hexahedron(m, node, cut, u) : of_tetrahedron(m, node, u);
+}
+
+/* ---- laminates */
+
+bool laminates_at(const element_mesh *mesh, const materials_map *map, hourglass_control control, int64_t element,
+                  const element_motion *motion, laminate_motion *to)
+{
+    const int64_t row = mesh->borders.count ? borders_at(&mesh->borders, element) : -1;
+    if (row < 0)
+        return false;
+    const double share = (double)map->mixture[element];
+    const material_numbers own = material_numbers_of(&map->of_volume[map->volume[element]]),
+                           other = material_numbers_of(&map->of_volume[map->mix[element]]),
+                           between = material_mixed(&own, &other, share);
+    double n[LAMINATE_NUMBERS];
+    borders_numbers(&mesh->borders, row, mesh->side, share, n);
+    const element_laminate l = laminate_by(n, share, own.at_rest.bulk, other.at_rest.bulk);
+    to->form = form_of_both(own.form, own.c, other.form, other.c, to->c[0], to->c[1]);
+    for (int i = 0; i < form_moduli(to->form); i++) {
+        to->c[0][i] *= 1 - share;
+        to->c[1][i] *= share;
+    }
+    memcpy(to->law.c, between.c, sizeof between.c);
+    hourglass_numbers(control, between.at_rest.mu, between.at_rest.bulk, mesh->side, to->law.hourglass);
+    const element_shape box = element_box(mesh->side[0], mesh->side[1], mesh->side[2]);
+    to->is = laminate_held(to->form, control.kind, motion->along[0], motion->along[1], motion->along[2], box, &to->law,
+                           to->c[0], to->c[1], &l);
+    return true;
+}
+
+/* P F^T. */
+static element_tensor pushed(element_tensor p, element_tensor h)
+{
+    const element_tensor f = {1 + h.xx, h.yx, h.zx, h.xy, 1 + h.yy, h.zy, h.xz, h.yz, 1 + h.zz};
+    return element_product(p, f);
+}
+
+element_tensor laminates_stress(const laminate_motion *of)
+{
+    return element_sum(pushed(of->is.p1, of->is.h1), pushed(of->is.p2, of->is.h2));
+}
+
+double laminates_energy(const laminate_motion *of, int part)
+{
+    return form_energy(of->form, part ? of->is.h2 : of->is.h1, of->c[part]);
 }

@@ -6,7 +6,9 @@
 #define SINEW_ELEMENT_MOTION_H
 
 #include "mesh/cut_moments.h"
+#include "model/materials.h"
 #include "physics/element_any.h"
+#include "physics/element_laminate.h"
 
 typedef struct element_mesh {
     const int32_t *node; /* elements x corners, VTK order */
@@ -16,6 +18,7 @@ typedef struct element_mesh {
     bool is_lattice;    /* hexahedra, all boxes of `side` */
     double side[3];     /* m */
     cut_moments cut;    /* of boxes: whose gradient is its mean over what is enclosed */
+    borders borders;    /* of boxes that are laminates */
 } element_mesh;
 
 typedef struct element_motion {
@@ -24,8 +27,9 @@ typedef struct element_motion {
     double volume; /* m3, at rest */
     /* Of hexahedra: */
     hourglass_modes modes;
-    double squares;  /* 1/m2: sum of B^2 over corners and axes */
-    element_any any; /* where it is no box */
+    element_modes along[3]; /* of boxes: of each component, m */
+    double squares;         /* 1/m2: sum of B^2 over corners and axes */
+    element_any any;        /* where it is no box */
 } element_motion;
 
 /* -1 with e filled where the model lacks what it takes. */
@@ -33,5 +37,23 @@ int element_mesh_of(element_mesh *to, const model *m, err *e);
 
 /* u: nodes x 3, m. Not finite where a tetrahedron is flat. */
 element_motion element_motion_of(const element_mesh *m, int64_t element, const double *u);
+
+/* What the two parts of an element that is a laminate do (element_laminate.h). */
+typedef struct laminate_motion {
+    enum form form;
+    double c[2][FORM_NUMBERS]; /* coefficients of the parts, by their shares */
+    element_law law;           /* between the two, with modes' stiffness as it is at the mean F */
+    laminate_state is;
+} laminate_motion;
+
+/* False: the element is none. control: of the run that moved it. */
+bool laminates_at(const element_mesh *mesh, const materials_map *map, hourglass_control control, int64_t element,
+                  const element_motion *motion, laminate_motion *to);
+
+/* P (Pa) times F^T, of both parts: over J at the mean F their Cauchy stress, by the volumes that they have now. */
+element_tensor laminates_stress(const laminate_motion *of);
+
+/* Of part 0 or 1, J/m3, by the volume of the whole at rest. */
+double laminates_energy(const laminate_motion *of, int part);
 
 #endif

@@ -48,9 +48,19 @@ static void hold_of(const view *v, double mu, double bulk, double volume, double
         to[HOURGLASS_K] *= wave / (11 * mu);
 }
 
-static void add_element(const view *v, int64_t element, const material_numbers *of, double fraction, energy *to)
+/* Its parts' energies, in place of its law's, and its modes'. */
+static void add_laminate(const laminate_motion *l, double volume, energy *to)
+{
+    to->strain += volume * (laminates_energy(l, 0) + laminates_energy(l, 1));
+    to->hourglass += hourglass_dot(&l->is.held.f, &l->is.modes) / 2;
+}
+
+static void add_element(const view *v, const materials_map *map, int64_t element, double fraction, energy *to)
 {
     const element_motion is = element_motion_of(&v->mesh, element, v->u);
+    const material_numbers own = materials_of_element(map, element), *of = &own;
+    laminate_motion l;
+    const bool laminate = laminates_at(&v->mesh, map, v->control, element, &is, &l);
     const fibre_sets fibres = fibre_sets_at(&v->fibres, element);
     const double *side = v->mesh.side, mu = of->at_rest.mu;
     double hold[HOURGLASS_NUMBERS];
@@ -60,10 +70,13 @@ static void add_element(const view *v, int64_t element, const material_numbers *
         v->mesh.is_lattice ? hourglass_of(v->control.kind, is.modes, is.h, element_box(side[0], side[1], side[2]), hold)
                            : element_any_hourglass(v->control.kind, is.modes, is.h, &is.any, hold);
     to->scale += fraction * is.volume * mu;
-    to->strain +=
-        fraction * is.volume *
-        (material_energy(of, is.h) + muscles_energy(&v->muscles, element, is.h) + fibre_sets_energy(&fibres, is.h));
-    to->hourglass += fraction * stiffer * hourglass_dot(&force.f, &is.modes) / 2;
+    to->strain += fraction * is.volume *
+                  ((laminate ? 0 : material_energy(of, is.h)) + muscles_energy(&v->muscles, element, is.h) +
+                   fibre_sets_energy(&fibres, is.h));
+    if (laminate)
+        add_laminate(&l, is.volume, to);
+    else
+        to->hourglass += fraction * stiffer * hourglass_dot(&force.f, &is.modes) / 2;
 }
 
 /* How the run that wrote the frames held hourglass modes: hourglass.control, or hourglass.kappa of older releases. */
@@ -118,10 +131,8 @@ int energy_of(energy *to, const model *m, const frame *f, err *e)
     const materials_map map = materials_map_of(m, law);
     v.muscles = element_fibres_of(m, &map);
     const int64_t elements = model_count(m, "element");
-    for (int64_t i = 0; i < elements; i++) {
-        const material_numbers own = materials_of_element(&map, i);
-        add_element(&v, i, &own, fraction ? (double)fraction->f32[i] : 1, to);
-    }
+    for (int64_t i = 0; i < elements; i++)
+        add_element(&v, &map, i, fraction ? (double)fraction->f32[i] : 1, to);
     fibres_free(&v.fibres);
     free(law);
     return 0;

@@ -67,6 +67,12 @@ typedef struct known {
       "second volume that it is mixed of, -1 = none")                                                                  \
     X("element.mixture", MODEL_F32, "1", "element", 1, 1, 0, KNOWN_FROM, 0, 1, "voxelise",                             \
       "share of what is enclosed that is of element.mix; the rest is of element.volume")                               \
+    X("border.element", MODEL_I32, "@element", "border", 1, 1, KNOWN_EVERY, KNOWN_ANY, 0, 0, "voxelise",               \
+      "element that is a laminate of its two volumes, parted by a plane; ascending")                                   \
+    X("border.normal", MODEL_F32, "1", "border", 3, 3, 0, KNOWN_FROM, -1, 1, "voxelise",                               \
+      "unit normal of that plane, towards element.mix")                                                                \
+    X("border.moments", MODEL_F32, "1", "border", 6, 6, 0, KNOWN_FROM, -1, 1, "voxelise",                              \
+      "means over the part of element.mix of xi, eta, zeta, xi eta, eta zeta, zeta xi, each from -1 to 1 across it")   \
     X("element.inside", MODEL_F32, "1", "element", 3, 3, 0, KNOWN_FROM, 0, 1, "voxelise",                              \
       "a place in it that the surfaces enclose, in shares of its sides; without the array its centre")                 \
     X("element.fibre", MODEL_F32, "1", "element", 3, 3, 0, KNOWN_DIRECTION, 0, 0, "attach",                            \

@@ -7,6 +7,7 @@
 #include "mesh/element_motion.h"
 #include "mesh/fibre_sets.h"
 #include "mesh/gradient.h"
+#include "model/hourglass_text.h"
 #include "model/materials.h"
 
 #include <math.h>
@@ -34,8 +35,9 @@ struct results {
     fibres_view fibres;               /* owned */
     const int32_t *volume, *material; /* elements, volumes */
     int64_t materials;
-    const float *fraction; /* elements; NULL: 1 */
-    double *part;          /* chunks x materials, J: owned */
+    const float *fraction;     /* elements; NULL: 1 */
+    hourglass_control control; /* of the run, for laminates */
+    double *part;              /* chunks x materials, J: owned */
     /* Of the frame that is looked at: */
     const double *u, *activation; /* nodes x 3, m; volumes, NULL: nothing contracts */
     float *to[RESULTS];           /* of elements; NULL: not wanted */
@@ -105,6 +107,8 @@ typedef struct held {
     double c[FORM_NUMBERS];
     element_fibre fibre, second;
     fibre_sets sets;
+    bool is_laminate; /* of these two parts, in place of its law */
+    laminate_motion parts;
 } held;
 
 static held held_of(const results *r, int64_t i)
@@ -118,12 +122,15 @@ static held held_of(const results *r, int64_t i)
                .second = element_fibres_second(&r->muscles, i, r->activation),
                .sets = fibre_sets_at(&r->fibres, i)};
     memcpy(to.c, own.c, sizeof to.c);
+    to.is_laminate = laminates_at(&r->mesh, &r->map, r->control, i, &is, &to.parts);
     return to;
 }
 
 /* Of its law alone, by volume at rest. */
 static double law_energy(const held *of)
 {
+    if (of->is_laminate)
+        return laminates_energy(&of->parts, 0) + laminates_energy(&of->parts, 1);
     return of->form == FORM_LINEAR ? linear_energy(of->h, of->c) : form_energy(of->form, of->h, of->c);
 }
 
@@ -134,18 +141,28 @@ static double energy_of_held(const held *of)
            fibre_sets_energy(&of->sets, of->h);
 }
 
+/* P of muscles and fibres, and of the law but in laminates. */
+static element_tensor stress_of(const held *of)
+{
+    double c[FORM_NUMBERS];
+    memcpy(c, of->c, sizeof c);
+    if (of->is_laminate)
+        memset(c, 0, (size_t)form_moduli(of->form) * sizeof *c);
+    return element_stress(of->form, of->h, c, of->fibre, element_fibre_which(of->fibre), of->second,
+                          element_fibre_which(of->second), of->sets.of, of->sets.count);
+}
+
 /* Cauchy's, P F^T / J, Pa: 3 x 3. nan where J is not above 0. Of what is linear the stress of small strains. */
 static void cauchy_of(const held *of, double to[9])
 {
     const element_tensor h = of->h;
-    element_tensor p = of->form == FORM_LINEAR
-                           ? linear_stress(h, of->c)
-                           : element_stress(of->form, h, of->c, of->fibre, element_fibre_which(of->fibre), of->second,
-                                            element_fibre_which(of->second), of->sets.of, of->sets.count);
+    element_tensor p = of->form == FORM_LINEAR ? linear_stress(h, of->c) : stress_of(of);
     const double volume = 1 + element_dilation(h);
     const element_tensor f = {1 + h.xx, h.yx, h.zx, h.xy, 1 + h.yy, h.zy, h.xz, h.yz, 1 + h.zz}; /* F^T */
     if (of->form != FORM_LINEAR)
         p = element_product(p, f);
+    if (of->is_laminate)
+        p = element_sum(p, laminates_stress(&of->parts));
     const double row[9] = {p.xx, p.xy, p.xz, p.yx, p.yy, p.yz, p.zx, p.zy, p.zz};
     for (int k = 0; k < 9; k++)
         to[k] = of->form == FORM_LINEAR ? row[k] : row[k] / (volume > 0 ? volume : (double)NAN);
@@ -220,9 +237,11 @@ static void add_energy(const results *r, int64_t i, const held *of, double *sum)
 {
     const int32_t mix = r->map.mix ? r->map.mix[i] : -1;
     const double share = mix < 0 ? 0 : (double)r->map.mixture[i], energy = of->volume * law_energy(of);
-    sum[r->material[r->volume[i]]] += (1 - share) * energy + of->volume * element_fibre_energy(of->h, of->fibre);
+    const double first = of->is_laminate ? of->volume * laminates_energy(&of->parts, 0) : (1 - share) * energy;
+    const double second = of->is_laminate ? of->volume * laminates_energy(&of->parts, 1) : share * energy;
+    sum[r->material[r->volume[i]]] += first + of->volume * element_fibre_energy(of->h, of->fibre);
     if (mix >= 0)
-        sum[r->material[mix]] += share * energy + of->volume * element_fibre_energy(of->h, of->second);
+        sum[r->material[mix]] += second + of->volume * element_fibre_energy(of->h, of->second);
     for (int k = 0; k < of->sets.count; k++)
         sum[r->material[of->sets.second[k] ? mix : r->volume[i]]] += of->volume * fibre_energy(of->h, &of->sets.of[k]);
 }
@@ -329,12 +348,21 @@ static const float *floats_of(const model *m, const char *name)
     return a ? a->f32 : NULL;
 }
 
+/* How hourglass modes were held, which the model says where tled-run moved it. */
+static int take_control(results *r, err *e)
+{
+    const char *control = model_meta_of(r->m, "hourglass.control");
+    if (r->mesh.borders.count && control && hourglass_read(control, &r->control))
+        return err_set(e, NULL, 0, "hourglass.control holds '%.60s'; expected physical or isotropic:KAPPA", control);
+    return 0;
+}
+
 static int open_model(results *r, err *e)
 {
     const model *m = r->m;
     const model_array *volume = model_need(m, "element.volume", e);
     if (!volume || element_mesh_of(&r->mesh, m, e) || !(r->of_volume = materials_of_volumes(m, e)) ||
-        fibres_make(&r->fibres, m, r->of_volume, e))
+        fibres_make(&r->fibres, m, r->of_volume, e) || take_control(r, e))
         return -1;
     r->map = materials_map_of(m, r->of_volume);
     r->volume = volume->i32;

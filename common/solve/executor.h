@@ -21,7 +21,8 @@
     X(CURVES, "muscles with a passive stress or an optimum")                                                           \
     X(SERIES, "muscles in series with a spring: vmax=")                                                                \
     X(FIBRES, "fibres that resist being stretched")                                                                    \
-    X(CUTS, "mean strain of cut elements")
+    X(CUTS, "mean strain of cut elements")                                                                             \
+    X(BORDERS, "laminates of two volumes")
 
 enum executor_feature {
 #define EXECUTOR_NUMBER(name, words) EXECUTOR_NUMBER_##name,

@@ -18,7 +18,7 @@
 #define ELEMENT_LANES (VECTORS_BYTES / 8)
 #define CPU_PASS      VECTORS_OF(CPU_JOIN(cpu_pass_double_, CPU_FORM, _))
 #endif
-#include "physics/element_cut.h"
+#include "physics/element_laminate.h"
 #include "tled/problem/node.h"
 
 #define THE_FORM CPU_JOIN(FORM_, CPU_FORM, )
@@ -381,6 +381,43 @@ static __attribute__((noinline)) void cut_forces(const cpu_work *w, const rows_r
         plain_cut_forces(w, run, shape);
 }
 
+/* The borders of a run of laminates; bulk moduli are those of its volumes. */
+static inline element_laminate laminate_at(const cpu_work *w, const rows_run *run)
+{
+    real n[LAMINATE_NUMBERS];
+    for (int k = 0; k < LAMINATE_NUMBERS; k++)
+        n[k] = load(w->border, ((int64_t)run->border * LAMINATE_NUMBERS + k) * LANES);
+    const real *c = n + LAMINATE_SECOND, *k = n + LAMINATE_KINK;
+    const element_laminate l = {{n[0], n[1], n[2]},
+                                {c[0], c[1], c[2], c[3], c[4], c[5]},
+                                load(w->mixture, run->cell),
+                                {k[0], k[1], k[2], k[3]},
+                                {REAL_ZERO + (real_one)w->p->volume[run->volume].law.bulk,
+                                 REAL_ZERO + (real_one)w->p->volume[run->mix].law.bulk}};
+    return l;
+}
+
+static __attribute__((noinline)) void laminate_forces(const cpu_work *w, const rows_run *run, element_shape shape)
+{
+    const int which = muscle_of(w, w->fibre, run->volume), which_second = muscle_of(w, w->mixfibre, run->mix);
+    const element_laminate l = laminate_at(w, run);
+    const real own = 1 - l.share, other = l.share; /* laminates are enclosed wholly */
+    const element_law law = law_of_cells(w, run->cell, REAL_ZERO + 1),
+                      first = law_of_kind(kind_of(w, run->volume), own),
+                      second = law_of_kind(kind_of(w, run->mix), other);
+    const element_field u = moved_by(w, run);
+    element_fibre fibre = fibre_of(w, w->fibre, run, run->volume, own, which);
+    element_fibre along = fibre_of(w, w->mixfibre, run, run->mix, other, which_second);
+    if (w->p->serial)
+        contract_both(w, run, &u, shape, false, &fibre, &along);
+    const fibre_set sets[2] = {fibres_of(w, run->cell, run->volume, w->fibre, w->family, own),
+                               fibres_of(w, run->cell, run->mix, w->mixfibre, w->mixfamily, other)};
+    const element_field f =
+        element_force_laminate(THE_FORM, w->p->control.kind, u, shape, law, first.c, second.c, fibre, which, along,
+                               which_second, sets, is_fibred(w, run) ? 2 : 0, &l);
+    add_field(w, run, &f);
+}
+
 /* One component of a node that the script displaces or pushes. */
 static void move_extra(const cpu_work *w, int64_t at, int64_t n, int a, node_factors k)
 {
@@ -450,6 +487,8 @@ static inline void layer_forces(const cpu_work *w, const rows_layer *l, element_
     for (const rows_run *run = w->r->run + l->run; run < w->r->run + l->run + l->runs; run++)
         if (w->cut && run->cut >= 0)
             cut_forces(w, run, shape);
+        else if (w->border && run->border >= 0)
+            laminate_forces(w, run, shape);
         else if ((fibred && is_fibred(w, run)) || (serial && (is_serial(w, run->volume) || is_serial(w, run->mix))))
             fibred_forces(w, run, shape);
         else if (run->mix >= 0)

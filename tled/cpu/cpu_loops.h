@@ -46,6 +46,7 @@ struct tled_state {
     uint8_t *flags;                   /* rows.nodes: NODE_* */
     number *fibre, *fraction;         /* cells, with padding: 3 x and 1 x; or NULL */
     number *cut, *weight;             /* cpu_work's (cpu_cut.h) */
+    number *border;                   /* likewise (cpu_border.h) */
     number *mixfibre, *mixture, *law; /* likewise; law: a law's numbers x */
     number *family, *mixfamily;       /* likewise, of families at an angle to the fibre: 6 x */
     number *shape, *force;            /* a mesh's: cpu_work's, as is: */
@@ -324,6 +325,7 @@ static int make_numbers(number **to, int64_t count, int columns, err *e)
     return *to ? 0 : -1;
 }
 
+#include "tled/cpu/cpu_border.h"
 #include "tled/cpu/cpu_cut.h"
 
 static int64_t cpu_bytes(const cpu_state *s)
@@ -337,7 +339,7 @@ static int64_t cpu_bytes(const cpu_state *s)
         numbers += s->slot[i] ? numbers_of(s, FIELD_IN_FRAMES) : 0;
     return numbers * (int64_t)sizeof(number) + r->nodes * (7 * (int64_t)sizeof(number) + 1 + 4) +
            r->runs * (int64_t)sizeof *r->run + r->cells * (cells * (int64_t)sizeof(number) + 4) + s->mesh_bytes +
-           cut_bytes(s) + followers_bytes(s->p->followers);
+           cut_bytes(s) + border_bytes(s) + followers_bytes(s->p->followers);
 }
 
 /* ---- life */
@@ -357,6 +359,7 @@ static void cpu_destroy(cpu_state *s)
     free(s->fibre);
     free(s->fraction);
     free(s->cut);
+    free(s->border);
     free(s->weight);
     free(s->mixfibre);
     free(s->family);
@@ -416,7 +419,8 @@ static int allocate(cpu_state *s, err *e)
 {
     const int64_t nodes = s->rows.nodes;
     if (allocate_fields(s, e) || make_numbers(&s->spare, nodes, 3, e) || make_numbers(&s->sum, nodes, 3, e) ||
-        make_numbers(&s->mass_inverse, nodes, 1, e) || allocate_cells(s, e) || cut_allocate(s, e))
+        make_numbers(&s->mass_inverse, nodes, 1, e) || allocate_cells(s, e) || cut_allocate(s, e) ||
+        border_allocate(s, e))
         return -1;
     s->kind = mem_array(s->p->volumes, (size_t)cpu_kind_numbers(s->p->form) * sizeof *s->kind, "the solver", e);
     s->flags = mem_array(nodes, 1, "the solver", e);
@@ -485,6 +489,7 @@ static void make_work(cpu_state *s)
     w->flags = s->flags;
     w->fraction = s->fraction;
     w->cut = s->cut;
+    w->border = s->border;
     w->weight = s->weight;
     w->mixture = s->mixture;
     w->shape = s->shape;
@@ -532,6 +537,7 @@ static cpu_state *create_by(const cpu_method *method, const tled_problem *proble
     fill_nodes(s);
     fill_cells(s);
     cut_fill(s);
+    border_fill(s);
     make_work(s);
     return s;
 }
@@ -565,10 +571,12 @@ static int64_t cpu_computed(const cpu_state *s)
 
 enum { CPU_FEATURES = EXECUTOR_USUAL | EXECUTOR_CONTACT | EXECUTOR_FOLLOWERS };
 
-const tled_executor CPU_EXECUTOR = {
-    .is = {.device = "cpu", .features = CPU_FEATURES, .forms = (1U << FORM_STEPPED) - 1, .unusable = cpu_unusable},
-    .create = boxes_create,
-    CPU_FUNCTIONS};
+const tled_executor CPU_EXECUTOR = {.is = {.device = "cpu",
+                                           .features = CPU_FEATURES | EXECUTOR_BORDERS,
+                                           .forms = (1U << FORM_STEPPED) - 1,
+                                           .unusable = cpu_unusable},
+                                    .create = boxes_create,
+                                    CPU_FUNCTIONS};
 
 const tled_executor CPU_EXECUTOR_OF_MESHES = {.is = {.device = "cpu",
                                                      .features = EXECUTOR_MESHES | CPU_FEATURES,

@@ -53,6 +53,7 @@ typedef struct cpu_work {
     const void *fibre[3]; /* cells, or NULL */
     const void *fraction; /* cells, or NULL */
     const void *cut;      /* runs that are cut x 6 moments x lanes; or NULL: none is */
+    const void *border;   /* runs of laminates x LAMINATE_NUMBERS x lanes; or NULL: none is */
     const void *weight;   /* nodes: by which gravity goes, in parts of the mass; or NULL: all of it */
     const void *mixture;  /* cells, or NULL: none is mixed */
     const void *law[FORM_NUMBERS + HOURGLASS_NUMBERS];                    /* cells: those that are mixed; or NULL */

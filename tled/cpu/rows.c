@@ -125,7 +125,8 @@ static uint8_t own_rows(const builder *b, int64_t element, int32_t slab)
 static bool follows(const builder *b, const rows_run *run, int64_t element, uint8_t mask)
 {
     if (run->count == b->r->lanes || run->mask != mask || !run->regular ||
-        run->volume != b->p->element_volume[element] || run->mix != tled_mix(b->p, element))
+        run->volume != b->p->element_volume[element] || run->mix != tled_mix(b->p, element) ||
+        (run->border >= 0) != (tled_border(b->p, element) != NULL))
         return false;
     for (int c = 0; c < 8; c++)
         if (b->r->place[b->p->element_node[8 * element + c]] != run->node[c] + run->count)
@@ -167,6 +168,7 @@ static int add_cell(builder *b, int64_t element, uint8_t mask, bool begins)
                       .volume = b->p->element_volume[element],
                       .mix = tled_mix(b->p, element),
                       .cut = -1,
+                      .border = tled_border(b->p, element) ? r->borders++ : -1,
                       .count = 1,
                       .mask = mask};
     for (int c = 0; c < 8; c++)

@@ -21,12 +21,13 @@ typedef struct rows_run {
     int32_t node[8]; /* of its first element's corners, VTK order, in the rows' order of nodes */
     int32_t cell;    /* its first element, in the order of fibre and fraction */
     int32_t volume;
-    int32_t mix;   /* the second volume of all of them, or -1 */
-    int32_t cut;   /* of runs with an element that is cut, which one this is; -1: none is */
-    uint8_t count; /* elements */
-    uint8_t mask;  /* bit r: the row of nodes at corners 2r and 2r + 1 (r = 0 to 3: y, z
+    int32_t mix;    /* the second volume of all of them, or -1 */
+    int32_t cut;    /* of runs with an element that is cut, which one this is; -1: none is */
+    int32_t border; /* of runs of laminates, which one this is; -1: none of its elements is one */
+    uint8_t count;  /* elements */
+    uint8_t mask;   /* bit r: the row of nodes at corners 2r and 2r + 1 (r = 0 to 3: y, z
                * low; y high; ...) is the slab's own */
-    bool regular;  /* node[1] is node[0] + 1, and so on */
+    bool regular;   /* node[1] is node[0] + 1, and so on */
 } rows_run;
 
 /* A layer of a slab: after its runs, its nodes have their sums. */
@@ -42,8 +43,9 @@ typedef struct rows_slab {
 
 typedef struct rows {
     int32_t lanes;
-    int32_t slabs, layers, runs, cells, extras, cuts; /* cuts: runs with an element that is cut */
-    int64_t nodes;                                    /* with all padding: the length of arrays over nodes */
+    int32_t slabs, layers, runs, cells, extras, cuts, borders; /* cuts: runs with an element that is cut; borders:
+                                                                * of laminates */
+    int64_t nodes;                                             /* with all padding: the length of arrays over nodes */
     rows_slab *slab;
     rows_layer *layer;
     rows_run *run;

@@ -5,6 +5,7 @@
 #include "physics/element.h"
 #include "physics/element_cut.h"
 #include "tled/problem/conforming_step.h"
+#include "tled/problem/cut.h"
 #include "tled/problem/followers.h"
 #include "tled/problem/muscle_fibre.h"
 #include "tled/problem/pose_fit.h"
@@ -138,6 +139,12 @@ static element_field pull_of(const tled_problem *p, int64_t element, const bodie
     const element_law law = law_at(p->form, &of, of.hourglass, share);
     const int which = element_fibre_which(own), which_other = element_fibre_which(other);
     const float *cut = tled_cut(p, element);
+    const double *border = tled_border(p, element);
+    if (border) {
+        const border_parts parts = border_parts_of(p, element, border);
+        return element_force_laminate(p->form, p->control.kind, u, box, parts.law, parts.c[0], parts.c[1], own, which,
+                                      other, which_other, sets.of, sets.count, &parts.l);
+    }
     if (cut)
         return element_force_cut(p->form, p->control.kind, u, box, law, own, which, other, which_other, sets.of,
                                  sets.count, element_cut_of(cut));

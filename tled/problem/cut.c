@@ -4,6 +4,7 @@
 #include "mesh/lattice.h"
 
 #include <math.h>
+#include <string.h>
 
 double cut_inertia(const tled_problem *p, int64_t element)
 {
@@ -68,4 +69,80 @@ double cut_raises(const tled_problem *p, int64_t element, const float *moments)
 {
     const stability_gram g = stability_gram_of(element_cut_of(moments));
     return cut_lighter(tled_fraction(p, element)) * stability_gram_bound(&g);
+}
+
+/* ---- laminates */
+
+int border_borrow(tled_problem *p, const model *m, err *e)
+{
+    if (borders_of(&p->borders, m, e))
+        return -1;
+    const borders *of = &p->borders;
+    if (of->count && p->conforming)
+        return err_set(e, NULL, 0, "border.element is of elements without a lattice; expected a lattice's boxes");
+    if (of->count && p->own_mix)
+        return err_set(e, NULL, 0,
+                       "elements have values in place of their materials' and others are laminates "
+                       "(border.element); expected one of these");
+    p->border = of->count ? mem_array(of->count, LAMINATE_NUMBERS * sizeof *p->border, "the borders", e) : NULL;
+    for (int64_t i = 0; p->border && i < of->count; i++)
+        borders_numbers(of, i, p->side, tled_mixture(p, of->element[i]), p->border + LAMINATE_NUMBERS * i);
+    return of->count && !p->border ? -1 : 0;
+}
+
+border_parts border_parts_of(const tled_problem *p, int64_t element, const double *numbers)
+{
+    const tled_law *law[2] = {&p->volume[p->element_volume[element]].law, &p->volume[tled_mix(p, element)].law};
+    const tled_law between = tled_law_of(p, element);
+    const double mixture = tled_mixture(p, element), by[2] = {1 - mixture, mixture};
+    const int moduli = form_moduli(p->form);
+    border_parts to = {.l = laminate_by(numbers, mixture, law[0]->bulk, law[1]->bulk)};
+    for (int i = 0; i < FORM_NUMBERS; i++) {
+        to.c[0][i] = law[0]->c[i] * (i < moduli ? by[0] : 1);
+        to.c[1][i] = law[1]->c[i] * (i < moduli ? by[1] : 1);
+    }
+    memcpy(to.law.c, between.c, sizeof between.c);
+    memcpy(to.law.hourglass, between.hourglass, sizeof between.hourglass);
+    return to;
+}
+
+laminate_state border_state(const tled_problem *p, border_parts *parts, element_modes x, element_modes y,
+                            element_modes z, element_shape box)
+{
+    return laminate_held(p->form, p->control.kind, x, y, z, box, &parts->law, parts->c[0], parts->c[1], &parts->l);
+}
+
+static double length_of(element_vector a)
+{
+    return sqrt(a.x * a.x + a.y * a.y + a.z * a.z);
+}
+
+bool border_is_found(const laminate_state *is)
+{
+    return 1 + element_dilation(is->h1) > 0 && 1 + element_dilation(is->h2) > 0 &&
+           length_of(is->left) <= .1 * length_of(is->jump) + 1e-3;
+}
+
+double border_square(const tled_problem *p, const border_parts *parts, const laminate_state *is, const double *rest,
+                     double density, const step_fibres *fibres, stability_twists t, double highest)
+{
+    stability_laminate m;
+    stability_laminate_matrices(p->form, is, &parts->l, parts->c[0], parts->c[1], rest, density, p->side, fibres->own,
+                                fibres->other, fibres->sets.of, fibres->sets.count, &m);
+    const double bound = stability_laminate_bound(&m, t);
+    return bound <= highest ? bound : stability_laminate_square(&m, t);
+}
+
+double border_square_at_rest(const tled_problem *p, int64_t element, const double *numbers, const step_fibres *fibres,
+                             double highest)
+{
+    const laminate_state rest = {.jump = {0, 0, 0}};
+    const tled_law law = tled_law_of(p, element);
+    const border_parts parts = border_parts_of(p, element, numbers);
+    step_fibres at_rest = *fibres;
+    double none[FORM_NUMBERS];
+    memcpy(none, law.c, sizeof none);
+    memset(none, 0, (size_t)form_moduli(p->form) * sizeof *none);
+    at_rest.own = at_rest.other = (element_fibre){.tension = 0};
+    return border_square(p, &parts, &rest, none, law.density, &at_rest, (stability_twists){law.twists, 0}, highest);
 }

@@ -13,6 +13,22 @@ static element_modes modes_of(const tled_problem *p, int64_t element, const doub
     return element_modes_of(c);
 }
 
+/* Of a laminate: its energies, nan where its parts cannot be. The law keeps what adds to the tangent at the mean F. */
+static void find_laminate(const tled_problem *p, int64_t element, element_shape box, element_modes x, element_modes y,
+                          element_modes z, deformed *d)
+{
+    d->parts = border_parts_of(p, element, d->border);
+    d->laminate = border_state(p, &d->parts, x, y, z, box);
+    const double held = hourglass_dot(&d->laminate.held.f, &d->laminate.modes) / 2;
+    d->energy = border_is_found(&d->laminate) ? laminate_energy(p->form, &d->laminate, d->parts.c[0], d->parts.c[1])
+                                              : (double)NAN;
+    d->stiffening = stability_stiffening_of(p->form, p->control.kind, d->h, d->law.c);
+    d->hourglass = held;
+    for (int i = 0; i < form_moduli(p->form); i++)
+        d->law.c[i] = 0;
+    stability_stiffen(d->stiffening, held / d->stiffening.now / d->rest, d->law.c);
+}
+
 deformed deformed_of(const tled_problem *p, int64_t element, element_shape box, const double *displacement)
 {
     deformed d = {.law = tled_law_of(p, element)};
@@ -35,8 +51,14 @@ deformed deformed_of(const tled_problem *p, int64_t element, element_shape box, 
     const double w0 = hourglass_dot(&f.f, &d.modes) / 2; /* f.m = s.q: the energy is quadratic in q */
     d.dilation = element_dilation(d.h);
     const fibre_sets fibres = fibre_sets_at(&p->fibres, element);
-    d.energy =
-        form_energy(p->form, d.h, d.law.c) + muscle_fibre_energy(p, element, d.h) + fibre_sets_energy(&fibres, d.h);
+    const double along = muscle_fibre_energy(p, element, d.h) + fibre_sets_energy(&fibres, d.h);
+    d.border = tled_border(p, element);
+    if (d.border) {
+        find_laminate(p, element, box, x, y, z, &d);
+        d.energy += along;
+        return d;
+    }
+    d.energy = form_energy(p->form, d.h, d.law.c) + along;
     d.stiffening = stability_stiffening_of(p->form, p->control.kind, d.h, d.law.c);
     d.hourglass = d.stiffening.now * w0;
     stability_stiffen(d.stiffening, w0 / d.rest, d.law.c);

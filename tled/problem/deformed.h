@@ -6,6 +6,7 @@
 
 #include "physics/element.h"
 #include "physics/stability.h"
+#include "tled/problem/cut.h"
 #include "tled/problem/state.h"
 
 typedef struct deformed {
@@ -17,6 +18,9 @@ typedef struct deformed {
     double hourglass; /* J */
     hourglass_modes modes;
     stability_stiffening stiffening; /* how hourglass control follows the law */
+    const double *border;            /* of a laminate (border.h), or NULL; then: */
+    border_parts parts;              /* whose law, as `law` above, has no moduli but what it stiffens by */
+    laminate_state laminate;
 } deformed;
 
 /* box: of elements that are a lattice's. displacement: nodes x 3. */

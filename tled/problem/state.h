@@ -57,6 +57,8 @@ typedef struct tled_problem {
     cut_moments cut;       /* elements whose strain is its mean over that share (cut.h); of none: none is */
     const int32_t *mix;    /* elements: the second volume of those that are mixed, -1 in others; NULL: none is */
     const float *mixture;  /* elements: its share of the tissue, 0 to 1; where mix is not NULL */
+    borders borders;       /* mixed elements that are laminates (cut.h); of none: none is */
+    double *border;        /* of each of these LAMINATE_NUMBERS; owned, or NULL */
     const float *mixfibre; /* elements x 3: its fibre; or NULL */
     fibres_view fibres;    /* that resist being stretched; of NULL: there are none */
     int32_t *mixed;        /* elements: which of `law` is its own, or -1; NULL: none is. Owned, as is all below */
@@ -164,6 +166,13 @@ static inline int32_t tled_mix(const tled_problem *p, int64_t element)
 static inline double tled_mixture(const tled_problem *p, int64_t element)
 {
     return tled_mix(p, element) < 0 ? 0 : (double)p->mixture[element];
+}
+
+/* What is known of the border in an element that is a laminate: LAMINATE_NUMBERS (element_laminate.h); or NULL. */
+static inline const double *tled_border(const tled_problem *p, int64_t element)
+{
+    const int64_t row = p->borders.count ? borders_at(&p->borders, element) : -1;
+    return row < 0 ? NULL : p->border + LAMINATE_NUMBERS * row;
 }
 
 /* The law of an element: its volume's, or one between its two volumes'. */

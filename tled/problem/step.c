@@ -116,7 +116,11 @@ static double cut_square_at_rest(const tled_problem *p, int64_t element, const f
 static double higher(const tled_problem *p, int64_t element, double highest)
 {
     const float *moments = tled_cut(p, element);
+    const double *border = tled_border(p, element);
     step_fibres fibres = step_fibres_of(p, element, NULL);
+    if (border)
+        return fmax(highest, border_square_at_rest(p, element, border, &fibres, highest) +
+                                 (p->curved ? square_of_muscles(p, element) : 0));
     if (moments)
         return fmax(highest, cut_square_at_rest(p, element, moments, &fibres, highest));
     return fmax(highest,

@@ -51,6 +51,18 @@ static void add_cut(const monitor *w, int64_t i, const deformed *d, const float 
         take_frequency(part, i, w->raise * stability_square(t, step_largest(&a)));
 }
 
+/* Of a laminate. */
+static void add_border(const monitor *w, int64_t i, const deformed *d, double slope, const step_fibres *fibres,
+                       struct monitor_part *part)
+{
+    const stability_twists t =
+        stability_twists_of(w->p->control.kind, d->law.twists, slope, d->h, &d->laminate.modes, d->stiffening);
+    const double square =
+        border_square(w->p, &d->parts, &d->laminate, d->law.c, d->law.density, fibres, t, part->sum.frequency);
+    if (!(square <= part->sum.frequency))
+        take_frequency(part, i, w->raise * square);
+}
+
 /* Bounds tell enough of most elements: that they do not reach past the largest frequency of their chunk, or how far.
  * Where they are too wide, or leave open whether any reaches past the one at rest, the matrix tells, and the frequency
  * is raised to 1 % above the element's: so few need more than one test. */
@@ -62,6 +74,10 @@ static void add_step(const monitor *w, int64_t i, const deformed *d, element_sha
         stability_twists_of(p->control.kind, d->law.twists, slope, d->h, &d->modes, d->stiffening);
     const step_fibres fibres = step_fibres_of(p, i, w->curves);
     const float *cut = tled_cut(p, i);
+    if (d->border) {
+        add_border(w, i, d, slope, &fibres, part);
+        return;
+    }
     if (cut) {
         add_cut(w, i, d, cut, &fibres, t, part);
         return;
