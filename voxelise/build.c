@@ -1,7 +1,9 @@
 #include "voxelise/build.h"
 
 #include "base/mem.h"
+#include "mesh/cut_moments.h"
 
+#include <math.h>
 #include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -293,6 +295,28 @@ static int add_moments(model *m, const moments_list *list, err *e)
     return of ? 0 : -1;
 }
 
+/* The normal in space: n dA is as large as a face across an axis is, which is by 1 / side. */
+static int add_borders(model *m, const moments_list *list, const lattice *l, err *e)
+{
+    if (!list->count)
+        return 0;
+    if (model_axis_add(m, "border", list->count, e))
+        return -1;
+    model_array *element = model_add(m, "border.element", e), *n = element ? model_add(m, "border.normal", e) : NULL,
+                *of = n ? model_add(m, "border.moments", e) : NULL;
+    for (int64_t i = 0; of && i < list->count; i++) {
+        const moments_voxel *v = &list->voxel[i];
+        double length = 0;
+        for (int a = 0; a < 3; a++)
+            length += pow((double)v->faces[a] / l->spacing[a], 2);
+        for (int a = 0; a < 3; a++)
+            n->f32[3 * i + a] = (float)((double)v->faces[a] / l->spacing[a] / sqrt(length));
+        element->i32[i] = (int32_t)v->element;
+        memcpy(of->f32 + BORDER_MOMENTS * i, v->of, BORDER_MOMENTS * sizeof *v->of);
+    }
+    return of ? 0 : -1;
+}
+
 static int add_inside(model *m, const slits *s, err *e)
 {
     model_array *a = s->inside ? model_add(m, "element.inside", e) : NULL;
@@ -316,7 +340,10 @@ int build_elements(model *m, const voxels *x, const slits *s, const lattice *l, 
     if (atomic_load(&w.failed))
         err_memory(e, "a layer of nodes");
     else
-        status = (x->fraction && add_shares(m, x, e)) || add_moments(m, &x->cut, e) || add_inside(m, s, e) ? -1 : 0;
+        status = (x->fraction && add_shares(m, x, e)) || add_moments(m, &x->cut, e) ||
+                         add_borders(m, &x->border, l, e) || add_inside(m, s, e)
+                     ? -1
+                     : 0;
 out:
     free(w.first);
     voxels_layers_free(&layer);

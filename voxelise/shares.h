@@ -19,12 +19,14 @@
  *
  * Of voxels that are enclosed in part: the means of xi, eta, zeta, xi eta, eta zeta, zeta xi and xi eta zeta, each from
  * -1 to 1 across the voxel, over the samples that are inside. In units of half a sample's width all places are odd
- * whole numbers, so sums are exact, in any order.
+ * whole numbers, so sums are exact, in any order. And of a voxel that two volumes share: the moments of the second's
+ * part, and the normal of the border, n dA over which is what the part has of the voxel's faces, by Gauss.
  */
 
 typedef struct moments_voxel {
     int64_t element;
     float of[CUT_MOMENTS];
+    float faces[3]; /* of the part: on the high side of the voxel less the low, x, y and z, in parts of a side */
 } moments_voxel;
 
 /* In the order of the elements. */
@@ -36,6 +38,7 @@ typedef struct moments_list {
 /* Sums over samples: how many, and of each product of places. */
 typedef struct moments_sums {
     int64_t count, of[CUT_MOMENTS];
+    int64_t faces[3]; /* of rows: samples at the high side less those at the low */
 } moments_sums;
 
 /* Adds a sample of a voxel of `samples` along a side: i, j, k from 0. */
@@ -77,6 +80,7 @@ typedef struct shares_rule {
     int samples;  /* N, from 1 to SHARES_MOST */
     double least; /* the share of a voxel from which on it is one; some sample has to be inside in any case */
     bool moments; /* of voxels that are enclosed in part are found too */
+    bool borders; /* and in those that two volumes fill, where a plane parts these */
 } shares_rule;
 
 enum { SHARES_MOST = 16 };
@@ -89,8 +93,10 @@ typedef struct shares {
     int64_t slots, volume_capacity;
     int32_t *sum; /* slots x 2 x (cells + 1): what begins or ends to fill each voxel, and what is left over in it */
     int64_t sum_capacity;
-    int64_t from, past; /* voxels that samples lie in, from low */
-    moments moment;     /* of the row, where they are wanted */
+    int64_t from, past;           /* voxels that samples lie in, from low */
+    moments moment;               /* of the row, where they are wanted */
+    moments *part;                /* slots, likewise for borders: of each volume's samples */
+    int64_t parts, part_capacity; /* made */
 } shares;
 
 /* g: the lattice of samples. */
@@ -110,7 +116,7 @@ typedef struct shares_voxel {
 typedef struct shares_list {
     shares_voxel *voxel; /* owned */
     int64_t count, capacity;
-    moments_list cut; /* owned */
+    moments_list cut, border; /* owned */
 } shares_list;
 
 void shares_list_free(shares_list *l);

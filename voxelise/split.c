@@ -166,14 +166,14 @@ static int put_moments(const split *s, int64_t cell, int32_t order, voxels *to, 
 }
 
 /* Those of a voxel that is one element; *next: the first in x's list that is not taken yet. */
-static int copy_moments(voxels *to, int64_t at, const voxels *x, int64_t from, int64_t *next, err *e)
+static int copy_moments(moments_list *to, int64_t at, const moments_list *x, int64_t from, int64_t *next, err *e)
 {
-    while (*next < x->cut.count && x->cut.voxel[*next].element < from)
+    while (*next < x->count && x->voxel[*next].element < from)
         ++*next;
-    if (*next == x->cut.count || x->cut.voxel[*next].element != from)
+    if (*next == x->count || x->voxel[*next].element != from)
         return 0;
-    const moments_list one = {.voxel = &x->cut.voxel[*next], .count = 1};
-    return moments_list_join(&to->cut, &one, at - from, e);
+    const moments_list one = {.voxel = &x->voxel[*next], .count = 1};
+    return moments_list_join(to, &one, at - from, e);
 }
 
 static void copy_element(voxels *to, int64_t at, const voxels *x, int64_t from)
@@ -194,7 +194,7 @@ static int add_run(climb_runs *to, climb_run run, err *e)
 static int repeat(const split *s, const voxels *x, voxels *to, int samples, err *e)
 {
     climb_runs runs = {0};
-    int64_t element = 0, at = 0, cell = 0, cut = 0;
+    int64_t element = 0, at = 0, cell = 0, cut = 0, border = 0;
     int status = 0;
     for (int64_t r = 0; r < x->runs && !status; r++) {
         climb_run rest = x->run[r];
@@ -204,7 +204,11 @@ static int repeat(const split *s, const voxels *x, voxels *to, int samples, err 
             const bool here = cell < s->of->cells && s->of->cell[cell].element == element;
             if (!here || elements_of(s, cell) == 1) {
                 copy_element(to, at, x, element);
-                status = copy_moments(to, at++, x, element, &cut, e);
+                status = copy_moments(&to->cut, at, &x->cut, element, &cut, e) ||
+                                 copy_moments(&to->border, at, &x->border, element, &border, e)
+                             ? -1
+                             : 0;
+                at++;
                 continue;
             }
             status = add_run(&runs, (climb_run){rest.from, i, rest.j, rest.k, rest.volume}, e);
@@ -253,7 +257,9 @@ int split_voxels(const split *s, voxels *x, int samples, int32_t volumes, err *e
     free(x->mix);
     free(x->mixture);
     free(x->cut.voxel);
+    free(x->border.voxel);
     x->cut = to.cut;
+    x->border = to.border;
     x->run = to.run, x->fraction = to.fraction, x->mix = to.mix, x->mixture = to.mixture;
     x->runs = to.runs, x->elements = to.elements;
     count_kept(x, volumes);

@@ -28,6 +28,7 @@ struct options {
     double least;
     int slits;  /* a slits_choice */
     int strain; /* a strain_choice */
+    int mixed;  /* --mixed: 0 is between, 1 laminate, -1 not given: between */
     bool allow_open, check;
 };
 
@@ -61,6 +62,8 @@ static const opt option_list[] = {
      "smallest share that makes an element [default any]"},
     {OPT_ACTION, 0, "strain", "enclosed|centre", OPT_CHOICE, TO(strain), 0, 0, "enclosed|centre", 0,
      "where the strain of a partly enclosed voxel is taken [default enclosed]"},
+    {OPT_ACTION, 0, "mixed", "between|laminate", OPT_CHOICE, TO(mixed), 0, 0, "between|laminate", 0,
+     "how a voxel of two volumes takes its moduli [default between]"},
     {OPT_ACTION, 0, "slits", "on|off", OPT_CHOICE, TO(slits), 0, 0, "on|off", 0,
      "part what a surface lies between [default on with --fraction or --layers]"},
     {OPT_INPUT, 0, "allow-open", NULL, OPT_FLAG, TO(allow_open), 0, 0, NULL, 0, "accept open surfaces, with a warning"},
@@ -154,14 +157,14 @@ static int check_options(job *j, err *e)
         return err_usage(e, "-s and -n both give the voxel size; expected one of them");
     if (o->size.count == 2 || !all_positive(&o->size))
         return err_usage(e, "-s: expected one length, or three between commas, above 0");
-    if (o->check &&
-        (o->fraction > 0 || !isnan(o->least) || o->slits >= 0 || o->strain >= 0 || o->origin.count || o->box.count))
+    if (o->check && (o->fraction > 0 || !isnan(o->least) || o->slits >= 0 || o->strain >= 0 || o->mixed >= 0 ||
+                     o->origin.count || o->box.count))
         return err_usage(e, "--check looks at surfaces and makes no voxels; expected it without --fraction, --least, "
-                            "--strain, --slits, --origin and --box");
+                            "--strain, --mixed, --slits, --origin and --box");
     if (!isnan(o->least) && o->fraction < 0)
         return err_usage(e, "--least is for --fraction N; expected both, or neither");
-    if (o->strain >= 0 && o->fraction < 0)
-        return err_usage(e, "--strain is for --fraction N; expected both, or neither");
+    if ((o->strain >= 0 || o->mixed >= 0) && o->fraction < 0)
+        return err_usage(e, "--%s is for --fraction N; expected both, or neither", o->strain >= 0 ? "strain" : "mixed");
     if (!box_is_upright(j))
         return err_usage(e, "--box: expected X0,Y0,Z0,X1,Y1,Z1 with X0 < X1, Y0 < Y1 and Z0 < Z1");
     return strcmp(j->path, "-") ? 0 : tool_need_stdin("an OBJ", e);
@@ -296,7 +299,8 @@ static bool takes_moments(const struct options *o)
 static int find_voxels(job *j, err *e)
 {
     bool by_shares = j->o->fraction > 0;
-    shares_rule rule = {(int)j->o->fraction, isnan(j->o->least) ? 0 : j->o->least, takes_moments(j->o)};
+    shares_rule rule = {(int)j->o->fraction, isnan(j->o->least) ? 0 : j->o->least, takes_moments(j->o),
+                        j->o->mixed > 0};
     if (by_shares && grid_divide(&j->samples, &j->g, rule.samples, e))
         return -1;
     if (by_shares ? look_inside(j, &j->samples, &rule, e) : look_inside(j, &j->g, NULL, e))
@@ -564,6 +568,7 @@ static int run_tool(int argc, char **argv)
 {
     struct options o = {
         .cells = -1, .fraction = -1, .least = NAN, .slits = SLITS_NOT_GIVEN, .strain = STRAIN_NOT_GIVEN};
+    o.mixed = -1;
     err e = {0};
     tool t = {0};
     stage s = {0};

@@ -351,7 +351,8 @@ static int join_chunks(voxels *x, const work *w, err *e)
         if (c->to.runs)
             memcpy(x->run + at, c->to.run, (size_t)c->to.runs * sizeof *x->run);
         put_shares(x, voxel, &c->share);
-        if (pieces_list_join(&x->part, &c->part, voxel, e) || moments_list_join(&x->cut, &c->share.cut, voxel, e))
+        if (pieces_list_join(&x->part, &c->part, voxel, e) || moments_list_join(&x->cut, &c->share.cut, voxel, e) ||
+            moments_list_join(&x->border, &c->share.border, voxel, e))
             return -1;
         at += c->to.runs;
         voxel += c->share.count;
@@ -415,6 +416,7 @@ void voxels_free(voxels *x)
     free(x->mix);
     free(x->mixture);
     free(x->cut.voxel);
+    free(x->border.voxel);
     pieces_list_free(&x->part);
     *x = (voxels){0};
 }

@@ -13,13 +13,14 @@
 typedef struct voxels {
     climb_run *run;
     int64_t runs, elements;
-    climb_count *count; /* volumes; by shares, inside and reached are samples */
-    float *fraction;    /* elements, by shares; otherwise NULL */
-    int32_t *mix;       /* elements: the second volume, -1 = none; NULL where no element has one */
-    float *mixture;     /* elements: its share of what is enclosed; likewise */
-    bool moments;       /* by shares: they are looked for */
-    moments_list cut;   /* where they are: of elements that are enclosed in part */
-    pieces_list part;   /* by shares, where slits are looked for */
+    climb_count *count;  /* volumes; by shares, inside and reached are samples */
+    float *fraction;     /* elements, by shares; otherwise NULL */
+    int32_t *mix;        /* elements: the second volume, -1 = none; NULL where no element has one */
+    float *mixture;      /* elements: its share of what is enclosed; likewise */
+    bool moments;        /* by shares: they are looked for */
+    moments_list cut;    /* where they are: of elements that are enclosed in part */
+    moments_list border; /* of what two volumes fill, parted by a plane: of the second's part */
+    pieces_list part;    /* by shares, where slits are looked for */
 } voxels;
 
 /* test: with rays along CLIMB_RAY; by shares, of the lattice of samples. level: of each volume; volumes are in order of

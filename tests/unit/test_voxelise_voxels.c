@@ -313,8 +313,8 @@ static bool same_as_samples(const scene *s, const shares_rule *rule)
 
 static void test_shares(void)
 {
-    static const shares_rule rule[] = {{1, 0, true},   {2, 0, true}, {3, 0.4, true},
-                                       {4, 0.5, true}, {5, 1, true}, {7, 0.1, false}};
+    static const shares_rule rule[] = {{1, 0, true, true},   {2, 0, true, true}, {3, 0.4, true, false},
+                                       {4, 0.5, true, true}, {5, 1, true, true}, {7, 0.1, false, true}};
     int scenes = 60, wrong = 0;
     for (int n = 0; n < scenes; n++) {
         scene s;
