@@ -241,6 +241,7 @@ compare-msds: all
 # No time, but how fast models converge, by centres and by shares; it takes many minutes, and is no part of bench.
 bench-fraction: all
 	@tests/bench/fraction $(BIN) $(BENCH_FACE)
+	@tests/bench/border $(BIN) 16 32 64
 # Error against wall time beside CalculiX: ten minutes on two quiet processors, and so no part of bench; a table and a figure in out.
 bench-accuracy: all
 	@mkdir -p out
