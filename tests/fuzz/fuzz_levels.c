@@ -1,7 +1,7 @@
 /* Any bytes as a file of expressions and as a track: levels from 0 to 1 at times that rise, and activations that follow
  * them, or one error with a text. */
 // needs: tled/problem/script.c tled/problem/script_read.c tled/problem/script_nodes.c tled/problem/script_surface.c
-// needs: tled/problem/script_move.c tled/problem/pose_fit.c
+// needs: tled/problem/script_move.c
 // needs: tled/problem/script_levels.c tled/problem/script_muscles.c tled/problem/script_track.c tled/muscle/muscles.c
 // needs: tled/muscle/expressions.c tled/muscle/activation.c
 #include "tled/problem/script.h"

@@ -2,7 +2,7 @@
 // needs: tled/problem/script_surface.c
 // needs: tled/problem/script_nodes.c
 // needs: tled/problem/script_read.c common/inspect/info_key.c common/inspect/info_quality.c common/inspect/info_stats.c
-// needs: tled/problem/script_move.c tled/problem/pose_fit.c
+// needs: tled/problem/script_move.c
 // needs: tled/problem/script_levels.c tled/problem/script_muscles.c tled/problem/script_track.c tled/muscle/muscles.c
 // needs: tled/muscle/expressions.c tled/muscle/activation.c
 /* Any text as the lists of names that options take, over a small model: attach --rigid, msds-mesh --fix and --names,

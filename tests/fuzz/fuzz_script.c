@@ -1,7 +1,7 @@
 /* Any bytes as a script for a small model: curves whose times are in order and whose values
  * are finite, or one error with a text. */
 // needs: tled/problem/script.c tled/problem/script_read.c tled/problem/script_nodes.c tled/problem/script_surface.c
-// needs: tled/problem/script_move.c tled/problem/pose_fit.c
+// needs: tled/problem/script_move.c
 // needs: tled/problem/script_levels.c tled/problem/script_muscles.c tled/problem/script_track.c tled/muscle/muscles.c
 // needs: tled/muscle/expressions.c tled/muscle/activation.c
 #include "tled/problem/script.h"

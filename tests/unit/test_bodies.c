@@ -2,11 +2,11 @@
  * lines that come live, and nonsense.
  */
 // needs: tled/problem/script.c tled/problem/script_read.c tled/problem/script_nodes.c tled/problem/script_surface.c
-// needs: tled/problem/script_move.c tled/problem/pose_fit.c
+// needs: tled/problem/script_move.c
 // needs: tled/problem/script_levels.c tled/problem/script_muscles.c tled/problem/script_track.c tled/muscle/muscles.c
 // needs: tled/muscle/expressions.c tled/muscle/activation.c
+#include "probe/pose_fit.h"
 #include "tled/problem/moves.h"
-#include "tled/problem/pose_fit.h"
 #include "tled/problem/script.h"
 
 #include "tap.h"

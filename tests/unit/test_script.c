@@ -1,6 +1,6 @@
 /* Scripts of a run: curves and their values, targets and their nodes, the command line's curves, and nonsense. */
 // needs: tled/problem/script.c tled/problem/script_read.c tled/problem/script_nodes.c tled/problem/script_surface.c
-// needs: tled/problem/script_move.c tled/problem/pose_fit.c
+// needs: tled/problem/script_move.c
 // needs: tled/problem/script_levels.c tled/problem/script_muscles.c tled/problem/script_track.c tled/muscle/muscles.c
 // needs: tled/muscle/expressions.c tled/muscle/activation.c
 #include "tled/problem/script.h"

@@ -5,7 +5,7 @@
 // needs: tled/problem/conforming_step.c tled/problem/step.c tled/problem/cut.c
 // needs: tled/problem/script.c tled/problem/script_read.c tled/problem/script_nodes.c tled/problem/script_surface.c
 // needs: tled/problem/loads.c tled/problem/followers.c tled/problem/muscle_fibre.c
-// needs: tled/problem/script_move.c tled/problem/pose_fit.c
+// needs: tled/problem/script_move.c
 // needs: tled/problem/script_levels.c tled/problem/script_muscles.c tled/problem/script_track.c tled/muscle/muscles.c
 // needs: tled/muscle/expressions.c tled/muscle/activation.c tled/problem/bodies.c
 #include "tled/problem/step.h"

@@ -4,11 +4,11 @@
 #include "mesh/fibre_sets.h"
 #include "physics/element.h"
 #include "physics/element_cut.h"
+#include "probe/pose_fit.h"
 #include "tled/problem/conforming_step.h"
 #include "tled/problem/cut.h"
 #include "tled/problem/followers.h"
 #include "tled/problem/muscle_fibre.h"
-#include "tled/problem/pose_fit.h"
 
 #include <stdlib.h>
 #include <string.h>

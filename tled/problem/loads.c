@@ -2,7 +2,7 @@
 
 #include "base/mem.h"
 #include "mesh/bound.h"
-#include "tled/problem/triangle.h"
+#include "surface/triangle.h"
 
 #include <inttypes.h>
 #include <math.h>

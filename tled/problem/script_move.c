@@ -1,7 +1,7 @@
 #include "base/num.h"
 #include "mesh/rigid_body.h"
+#include "probe/pose_fit.h"
 #include "probe/poses.h"
-#include "tled/problem/pose_fit.h"
 #include "tled/problem/script_reader.h"
 
 #include <inttypes.h>

@@ -5,9 +5,9 @@
 #include "surface/scale.h"
 #include "surface/solid.h"
 #include "surface/surface_region.h"
+#include "surface/triangle.h"
 #include "surface/triangulate.h"
 #include "tled/problem/script.h"
-#include "tled/problem/triangle.h"
 
 #include <stdlib.h>
 #include <string.h>

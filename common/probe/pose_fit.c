@@ -1,4 +1,4 @@
-#include "tled/problem/pose_fit.h"
+#include "probe/pose_fit.h"
 
 #include <math.h>
 
