@@ -2,6 +2,7 @@
 # The mean strain of voxelise --fraction: moments of what surfaces enclose of voxels, and a tube under pressure by them (tled-run).
 . "$(dirname "$0")/lib.sh"
 . tests/cli/boxes.sh
+. tests/cli/hollow.sh
 
 
 # ---- moments
@@ -50,77 +51,12 @@ fails 2 "--strain of another kind" "--strain 'middle'" voxelise --unit mm -s 1 -
 
 # ---- under pressure (Lame): a quarter of a tube in plane strain and an eighth of a hollow sphere, of radii 11.3 and 20 mm, E 3 kPa
 
-# tube H: a voxel thick.
-# shellcheck disable=SC2317 # called by name
-tube() {
-    awk -v h="$1" 'BEGIN {
-        pi = atan2(0, -1); m = 512
-        for (k = 0; k < 2; k++)
-            for (j = 0; j < 2; j++)
-                for (i = 0; i <= m; i++) {
-                    r = j ? 20 : 11.3; x = r * cos(pi / 2 * i / m); y = r * sin(pi / 2 * i / m)
-                    printf "v %.12g %.12g %.12g\n", i == m ? 0 : x, i ? y : 0, k * h
-                }
-        print "g skin_in"
-        for (i = 1; i <= m; i++) { a = i; c = i + 2 * (m + 1); print "f", a, c, c + 1, a + 1 }
-        print "g skin_out"
-        for (i = 1; i <= m; i++) {
-            a = i + m + 1; c = i + 3 * (m + 1); print "f", a, a + 1, c + 1, c
-            print "f", i, i + 1, i + 1 + m + 1, i + m + 1
-            print "f", i + 2 * (m + 1), i + 3 * (m + 1), i + 1 + 3 * (m + 1), i + 1 + 2 * (m + 1)
-        }
-        print "f", 1, m + 2, 3 * m + 4, 2 * m + 3
-        print "f", m + 1, 3 * m + 3, 4 * m + 4, 2 * m + 2
-    }'
-}
-# ball H: of triangles with sides of a voxel or less.
-# shellcheck disable=SC2317 # called by name
-ball() {
-    awk -v h="$1" '
-        function at(r, i, j, k) {
-            if (!((r, i, j) in number)) {
-                l = sqrt(i * i + j * j + k * k)
-                printf "v %.12g %.12g %.12g\n", r * i / l, r * j / l, r * k / l
-                number[r, i, j] = ++count
-            }
-            return number[r, i, j]
-        }
-        function face(a, b, c, out) { list[++faces] = out ? a " " b " " c : c " " b " " a }
-        function shell(r, out) {
-            for (i = 0; i < m; i++)
-                for (j = 0; i + j < m; j++) {
-                    k = m - i - j
-                    face(at(r, i + 1, j, k - 1), at(r, i, j + 1, k - 1), at(r, i, j, k), out)
-                    if (k > 1)
-                        face(at(r, i + 1, j, k - 1), at(r, i + 1, j + 1, k - 2), at(r, i, j + 1, k - 1), out)
-                }
-        }
-        function side(a, b, c, d) { list[++faces] = a " " b " " c " " d }
-        BEGIN {
-            m = int(40 / h); if (m < 24) m = 24
-            shell(11.3, 0); inner = faces; shell(20, 1)
-            for (i = 0; i < m; i++) {
-                side(at(11.3, 0, m - i, i), at(11.3, 0, m - i - 1, i + 1), at(20, 0, m - i - 1, i + 1), at(20, 0, m - i, i))
-                side(at(11.3, i, 0, m - i), at(11.3, i + 1, 0, m - i - 1), at(20, i + 1, 0, m - i - 1), at(20, i, 0, m - i))
-                side(at(11.3, m - i, i, 0), at(11.3, m - i - 1, i + 1, 0), at(20, m - i - 1, i + 1, 0), at(20, m - i, i, 0))
-            }
-            print "g skin_in"
-            for (i = 1; i <= faces; i++) { if (i == inner + 1) print "g skin_out"; print "f", list[i] }
-        }'
-}
-# within X1 Y1 Z1 [Z0]: a box of a plane.
-within() {
-    printf -- '-1e-3mm,-1e-3mm,%smm,%smm,%smm,%smm' "${4--1e-3}" "$1" "$2" "$3"
-}
 # error SHAPE H RULE: of the displacement of nodes in the tissue at rest, in parts of it. Leaves $T/log.
 error() {
     "$1" "$2" >"$T/$1.obj"
     {
         echo "0 pressure $1:skin_in 3e-4"
-        echo "0 displace $(within 1e-3 21 21) 0,-,-"
-        echo "0 displace $(within 21 1e-3 21) -,0,-"
-        echo "0 displace $(within 21 21 1e-3) -,-,0"
-        [ "$1" = ball ] || echo "0 displace $(within 21 21 "$(plus "$2" 1e-3)" "$(plus "$2" -1e-3)") -,-,0"
+        planes "$1" "$2"
     } >"$T/script"
     voxelise -q --text --unit mm -s "$2" --origin 0,0,0 --fraction 8 --strain "$3" --volumes "$T/volumes" --materials "$T/materials" \
         "$T/$1.obj" 2>"$T/said" | sinew bind -q >"$T/model" 2>>"$T/said"
@@ -137,13 +73,6 @@ error() {
             n++
         }
         END { printf "%.9g", all ? sqrt(off / all) : 1 }' "$T/out"
-}
-plus() {
-    awk -v a="$1" -v b="$2" 'BEGIN { printf "%.9g", a + b }'
-}
-# below A B FACTOR NAME: A times the factor is at most B.
-below() {
-    check "$4 ($1, $2)" awk -v a="$1" -v b="$2" -v f="$3" 'BEGIN { exit !(a * f <= b) }'
 }
 echo "skin surfaces=skin_in,skin_out" >"$T/volumes"
 echo "tissue E=3000 nu=0.45 density=1000" >"$T/materials"
