@@ -110,6 +110,24 @@ typedef struct known {
       "how many rigid nodes")                                                                                          \
     X("attachment.centre", MODEL_F64, "m", "attachment", 3, 3, 0, KNOWN_FINITE, 0, 0, "attach",                        \
       "the mean of its rigid nodes")                                                                                   \
+    X("bone.element", MODEL_I32, "@element", "bone", 1, 1, KNOWN_EVERY, KNOWN_ANY, 0, 0, "attach",                     \
+      "element that a film of tissue on bone hangs on")                                                                \
+    X("bone.anchor", MODEL_I32, "@anchor", "bone", 1, 1, KNOWN_EVERY, KNOWN_ANY, 0, 0, "attach",                       \
+      "rigid surface that the film is on")                                                                             \
+    X("bone.point", MODEL_F64, "m", "bone", 3, 3, 0, KNOWN_FINITE, 0, 0, "attach",                                     \
+      "place in the element where it hangs on the film, at rest")                                                      \
+    X("bone.normal", MODEL_F32, "1", "bone", 3, 3, 0, KNOWN_DIRECTION, 0, 0, "attach",                                 \
+      "unit normal of the bone, into the tissue")                                                                      \
+    X("bone.depth", MODEL_F64, "m", "bone", 1, 1, 0, KNOWN_FROM, 0, 1e9, "attach",                                     \
+      "how thick the film is, from the bone to the place; above 0")                                                    \
+    X("bone.area", MODEL_F64, "m2", "bone", 1, 1, 0, KNOWN_FROM, 0, 1e9, "attach", "its area; above 0")                \
+    X("bone.body", MODEL_I32, "@body", "bone", 1, 1, 0, KNOWN_ANY, 0, 0, "attach",                                     \
+      "rigid body that the bone moves with, -1 = none")                                                                \
+    X("film.element", MODEL_I32, "@element", "film", 1, 1, KNOWN_EVERY, KNOWN_ANY, 0, 0, "attach",                     \
+      "element that films have a part of; ascending")                                                                  \
+    X("film.share", MODEL_F32, "1", "film", 1, 1, 0, KNOWN_FROM, 0, 1, "attach", "that part of its volume")            \
+    X("film.moments", MODEL_F32, "1", "film", 7, 7, 0, KNOWN_FROM, -1, 1, "attach",                                    \
+      "means over that part, as cut.moments")                                                                          \
     X("probe-vertex.position", MODEL_F64, "m", "probe-vertex", 3, 3, 0, KNOWN_FINITE, 0, 0, "msds-run or tled-run",    \
       "of a convex probe: a corner, in the probe's frame")                                                             \
     X("probe-face.vertex", MODEL_I32, "@probe-vertex", "probe-face", 3, 3, KNOWN_EVERY, KNOWN_ANY, 0, 0,               \

@@ -22,7 +22,8 @@
     X(SERIES, "muscles in series with a spring: vmax=")                                                                \
     X(FIBRES, "fibres that resist being stretched")                                                                    \
     X(CUTS, "mean strain of cut elements")                                                                             \
-    X(BORDERS, "laminates of two volumes")
+    X(BORDERS, "laminates of two volumes")                                                                             \
+    X(FILMS, "films on bone (attach --surface)")
 
 enum executor_feature {
 #define EXECUTOR_NUMBER(name, words) EXECUTOR_NUMBER_##name,

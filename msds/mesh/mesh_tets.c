@@ -203,6 +203,8 @@ int mesh_split(model *m, notes *warnings, err *e)
     note_bound(m, warnings);
     model_remove_all(m, is_weight, NULL); /* in hexahedra, they mean nothing without the elements */
     model_axis_drop(m, "element", warnings);
+    model_axis_drop(m, "bone", warnings);
+    model_axis_drop(m, "film", warnings);
     model_axis_drop(m, "cut", warnings); /* tetrahedra have the share alone */
     if (model_axis_add(m, "element", s.cells * MESH_TETS, e))
         goto out;

@@ -5,7 +5,7 @@
 // needs: tled/problem/conforming_step.c tled/problem/script.c
 // needs: tled/problem/script_surface.c tled/problem/loads.c tled/problem/followers.c tled/problem/muscle_fibre.c
 // needs: tled/problem/cut.c tled/problem/script_read.c tled/problem/script_nodes.c tled/problem/step.c
-// needs: tled/problem/support.c
+// needs: tled/problem/support.c tled/problem/films.c
 // needs: tled/problem/script_move.c
 // needs: tled/problem/script_levels.c tled/problem/script_muscles.c tled/problem/script_track.c tled/muscle/muscles.c
 // needs: tled/muscle/expressions.c tled/muscle/activation.c tled/problem/bodies.c

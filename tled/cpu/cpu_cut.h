@@ -5,18 +5,17 @@ enum { CUT_USED = 6 }; /* moments that forces take */
 
 static int cut_allocate(cpu_state *s, err *e)
 {
-    if (!s->p->cut.count)
-        return 0;
-    return make_numbers(&s->cut, s->rows.cuts, CUT_USED * s->pass->lanes, e) ||
-                   make_numbers(&s->weight, s->rows.nodes, 1, e)
+    const bool cuts = s->p->cut.count;
+    return (cuts && make_numbers(&s->cut, s->rows.cuts, CUT_USED * s->pass->lanes, e)) ||
+                   (s->p->weight && make_numbers(&s->weight, s->rows.nodes, 1, e))
                ? -1
                : 0;
 }
 
 static int64_t cut_bytes(const cpu_state *s)
 {
-    const int64_t numbers = (int64_t)s->rows.cuts * CUT_USED * s->pass->lanes + s->rows.nodes;
-    return s->cut ? numbers * (int64_t)sizeof(number) : 0;
+    const int64_t cuts = s->cut ? (int64_t)s->rows.cuts * CUT_USED * s->pass->lanes : 0;
+    return (cuts + (s->weight ? s->rows.nodes : 0)) * (int64_t)sizeof(number);
 }
 
 static void cut_fill_run(const cpu_state *s, const rows_run *run)

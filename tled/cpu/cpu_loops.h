@@ -10,6 +10,7 @@
 #include "tled/cpu/cpu_pass.h"
 #include "tled/problem/collider.h"
 #include "tled/problem/conforming.h"
+#include "tled/problem/films.h"
 #include "tled/problem/followers.h"
 
 #include <stdlib.h>
@@ -58,6 +59,7 @@ struct tled_state {
     double time;        /* where the state stands */
     double *now, *next; /* the curves' values */
     followers_work followers;
+    films_work films;
     cpu_work work;
 };
 
@@ -135,6 +137,8 @@ static void press_followers(cpu_state *s)
     pool_run(s->threads, s->p->followers->nodes, FOLLOWERS_CHUNK, followers_out, s);
 }
 
+#include "tled/cpu/cpu_films.h"
+
 /* One pass at the displacements of now, with the curves' values of now and of the step's end. */
 static void run_pass(cpu_state *s, const tled_plan *plan, double time, int what)
 {
@@ -157,6 +161,8 @@ static void run_pass(cpu_state *s, const tled_plan *plan, double time, int what)
     }
     if (s->p->followers)
         press_followers(s);
+    if (s->p->films)
+        strain_films(s);
     s->method->pass(s);
     s->spare_is_internal = (what & PASS_INTERNAL) != 0;
     if (what & PASS_BEGIN) {
@@ -339,7 +345,7 @@ static int64_t cpu_bytes(const cpu_state *s)
         numbers += s->slot[i] ? numbers_of(s, FIELD_IN_FRAMES) : 0;
     return numbers * (int64_t)sizeof(number) + r->nodes * (7 * (int64_t)sizeof(number) + 1 + 4) +
            r->runs * (int64_t)sizeof *r->run + r->cells * (cells * (int64_t)sizeof(number) + 4) + s->mesh_bytes +
-           cut_bytes(s) + border_bytes(s) + followers_bytes(s->p->followers);
+           cut_bytes(s) + border_bytes(s) + followers_bytes(s->p->followers) + films_bytes(s->p->films);
 }
 
 /* ---- life */
@@ -375,6 +381,7 @@ static void cpu_destroy(cpu_state *s)
     free(s->now);
     free(s->next);
     followers_room_free(&s->followers);
+    films_room_free(&s->films);
     free(s);
 }
 
@@ -420,7 +427,7 @@ static int allocate(cpu_state *s, err *e)
     const int64_t nodes = s->rows.nodes;
     if (allocate_fields(s, e) || make_numbers(&s->spare, nodes, 3, e) || make_numbers(&s->sum, nodes, 3, e) ||
         make_numbers(&s->mass_inverse, nodes, 1, e) || allocate_cells(s, e) || cut_allocate(s, e) ||
-        border_allocate(s, e))
+        border_allocate(s, e) || films_room(&s->films, s->p, e))
         return -1;
     s->kind = mem_array(s->p->volumes, (size_t)cpu_kind_numbers(s->p->form) * sizeof *s->kind, "the solver", e);
     s->flags = mem_array(nodes, 1, "the solver", e);
@@ -572,7 +579,7 @@ static int64_t cpu_computed(const cpu_state *s)
 enum { CPU_FEATURES = EXECUTOR_USUAL | EXECUTOR_CONTACT | EXECUTOR_FOLLOWERS };
 
 const tled_executor CPU_EXECUTOR = {.is = {.device = "cpu",
-                                           .features = CPU_FEATURES | EXECUTOR_BORDERS,
+                                           .features = CPU_FEATURES | EXECUTOR_BORDERS | EXECUTOR_FILMS,
                                            .forms = (1U << FORM_STEPPED) - 1,
                                            .unusable = cpu_unusable},
                                     .create = boxes_create,

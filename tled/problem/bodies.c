@@ -7,6 +7,7 @@
 #include "probe/pose_fit.h"
 #include "tled/problem/conforming_step.h"
 #include "tled/problem/cut.h"
+#include "tled/problem/film_strain.h"
 #include "tled/problem/followers.h"
 #include "tled/problem/muscle_fibre.h"
 
@@ -27,7 +28,7 @@ static int list_nodes(bodies *b, int64_t nodes, err *e)
     for (int32_t i = 0; i < b->count; i++) {
         b->start[i] = count;
         for (int64_t n = 0; n < nodes; n++)
-            if (b->of[n] == i)
+            if (b->of && b->of[n] == i)
                 b->node[count++] = (int32_t)n;
     }
     b->start[b->count] = count;
@@ -37,7 +38,7 @@ static int list_nodes(bodies *b, int64_t nodes, err *e)
 static bool touches(const tled_problem *p, const bodies *b, int64_t element)
 {
     for (int i = 0; i < 8; i++)
-        if (b->of[p->element_node[8 * element + i]] >= 0)
+        if (b->of && b->of[p->element_node[8 * element + i]] >= 0)
             return true;
     return false;
 }
@@ -60,7 +61,7 @@ int bodies_make(tled_problem *p, const model *m, err *e)
     if (!p->bodies)
         return -1;
     p->bodies->count = (int32_t)name->rows;
-    p->bodies->of = of->i32;
+    p->bodies->of = p->films ? NULL : of->i32; /* bone that films hang on has no nodes */
     return list_nodes(p->bodies, p->nodes, e) || list_elements(p, p->bodies, e) ? -1 : 0;
 }
 
@@ -152,6 +153,114 @@ static element_field pull_of(const tled_problem *p, int64_t element, const bodie
                                 sets.count);
 }
 
+/* ---- films */
+
+/* What a body's films hang on: their points as the bone has them at rest, and how these have moved. */
+typedef struct film_points {
+    double *displacement; /* films x 3, m */
+    int32_t *film;        /* of one body */
+    int64_t count;
+} film_points;
+
+static int points_make(film_points *to, const tled_problem *p, err *e)
+{
+    const int64_t count = films_count(p);
+    *to = (film_points){mem_array(count, 3 * sizeof *to->displacement, "the bodies", e),
+                        mem_array(count, sizeof *to->film, "the bodies", e), 0};
+    return to->displacement && to->film ? 0 : -1;
+}
+
+static void points_free(film_points *of)
+{
+    free(of->displacement);
+    free(of->film);
+}
+
+static void points_of(film_points *to, const tled_problem *p, int32_t body, const double *value)
+{
+    double turn[3][3];
+    to->count = 0;
+    for (int64_t i = 0; i < films_count(p); i++)
+        if (p->films->body && p->films->body[i] == body) {
+            films_bone(p, i, value, to->displacement + 3 * i, turn);
+            to->film[to->count++] = (int32_t)i;
+        }
+}
+
+static void place_points(const film_points *of, const tled_problem *p, double middle[3])
+{
+    for (int a = 0; a < 3; a++) {
+        middle[a] = 0;
+        for (int64_t i = 0; i < of->count; i++)
+            middle[a] +=
+                (p->films->point[3 * (int64_t)of->film[i] + a] + of->displacement[3 * (int64_t)of->film[i] + a]) /
+                (double)of->count;
+    }
+}
+
+static void add_force(body_load *to, const double x[3], const double middle[3], const double force[3])
+{
+    double d[3];
+    for (int a = 0; a < 3; a++)
+        d[a] = x[a] - middle[a];
+    for (int a = 0; a < 3; a++) {
+        to->force[a] += force[a];
+        to->torque[a] += d[(a + 1) % 3] * force[(a + 2) % 3] - d[(a + 2) % 3] * force[(a + 1) % 3];
+    }
+}
+
+/* A film pulls the bone as it pulls its element, the other way round; and the bone bears its weight. */
+static void add_film(const tled_problem *p, const bodies_state *now, int64_t film, const double middle[3],
+                     body_load *to)
+{
+    const films *f = p->films;
+    const int32_t *node = p->element_node + 8 * (int64_t)f->element[film];
+    const element_tensor h = films_gradient(p, film, now->displacement, node, now->value);
+    const element_tensor s = films_stress(p, film, h, now->value);
+    const double mass = tled_law_of(p, f->element[film]).density * f->area[film] * f->depth[film] * f->taken;
+    double force[3], x[3], bone[3], turn[3][3];
+    films_bone(p, film, now->value, bone, turn);
+    for (int c = 0; c < 8; c++) {
+        films_pull(f, film, c, &s, force);
+        for (int a = 0; a < 3; a++)
+            x[a] = p->position[3 * (int64_t)node[c] + a] + now->displacement[3 * (int64_t)node[c] + a];
+        add_force(to, x, middle, force);
+    }
+    for (int a = 0; a < 3; a++) {
+        force[a] = p->gravity < 0 ? 0 : mass * now->value[3 * p->gravity + a];
+        x[a] = f->point[3 * film + a] + bone[a];
+    }
+    add_force(to, x, middle, force);
+}
+
+static int film_loads(const tled_problem *p, const bodies_state *now, body_load *to, err *e)
+{
+    film_points of;
+    const int failed = points_make(&of, p, e);
+    for (int32_t i = 0; !failed && i < p->bodies->count; i++) {
+        double middle[3];
+        points_of(&of, p, i, now->value);
+        place_points(&of, p, middle);
+        for (int64_t k = 0; k < of.count; k++)
+            add_film(p, now, of.film[k], middle, &to[i]);
+    }
+    points_free(&of);
+    return failed;
+}
+
+static int film_poses(const tled_problem *p, const bodies_state *now, double *to, err *e)
+{
+    film_points of;
+    const int failed = points_make(&of, p, e);
+    for (int32_t i = 0; !failed && i < p->bodies->count; i++) {
+        points_of(&of, p, i, now->value);
+        const pose at = pose_fit(p->films->point, of.displacement, of.film, of.count);
+        pose_to_row(&at, to + 7 * (int64_t)i);
+    }
+    points_free(&of);
+    return failed;
+}
+
 /* ---- sums */
 
 typedef struct summing {
@@ -171,15 +280,9 @@ static void place_of(const summing *s, int64_t node, double x[3])
 static void add_at(const summing *s, int64_t node, const double force[3], body_load *list)
 {
     const int32_t body = s->p->bodies->of[node];
-    body_load *to = &list[body];
-    double x[3], d[3];
+    double x[3];
     place_of(s, node, x);
-    for (int a = 0; a < 3; a++)
-        d[a] = x[a] - s->middle[3 * body + a];
-    for (int a = 0; a < 3; a++) {
-        to->force[a] += force[a];
-        to->torque[a] += d[(a + 1) % 3] * force[(a + 2) % 3] - d[(a + 2) % 3] * force[(a + 1) % 3];
-    }
+    add_force(&list[body], x, s->middle + 3 * (int64_t)body, force);
 }
 
 static void element_work(void *context, int64_t chunk, int64_t from, int64_t to)
@@ -257,6 +360,8 @@ int bodies_loads(const tled_problem *p, pool *threads, const bodies_state *now, 
     summing s = {.p = p, .now = now};
     int failed = -1;
     memset(to, 0, (size_t)b->count * sizeof *to);
+    if (p->films)
+        return film_loads(p, now, to, e);
     s.middle = mem_array(b->count, 3 * sizeof *s.middle, "the bodies", e);
     s.part = s.middle ? mem_array(chunks * b->count, sizeof *s.part, "the bodies", e) : NULL;
     if (s.part) {
@@ -286,11 +391,17 @@ int bodies_add(const tled_problem *p, pool *threads, const bodies_state *now, fr
     }
     body_load *load = mem_array(b->count, sizeof *load, "the bodies", e);
     const int failed = load ? bodies_loads(p, threads, now, load, e) : -1;
+    if (!failed && p->films && film_poses(p, now, to[0], e)) {
+        free(load);
+        return -1;
+    }
     for (int32_t i = 0; !failed && i < b->count; i++) {
-        const pose at = pose_fit(p->position, now->displacement, b->node + b->start[i], b->start[i + 1] - b->start[i]);
-        pose_to_row(&at, to[0] + 7 * (int64_t)i);
         memcpy(to[1] + 3 * (int64_t)i, load[i].force, sizeof load[i].force);
         memcpy(to[2] + 3 * (int64_t)i, load[i].torque, sizeof load[i].torque);
+    }
+    for (int32_t i = 0; !failed && !p->films && i < b->count; i++) {
+        const pose at = pose_fit(p->position, now->displacement, b->node + b->start[i], b->start[i + 1] - b->start[i]);
+        pose_to_row(&at, to[0] + 7 * (int64_t)i);
     }
     free(load);
     return failed;

@@ -2,14 +2,20 @@
 
 #include "base/mem.h"
 #include "mesh/lattice.h"
+#include "tled/problem/films.h"
 
 #include <math.h>
 #include <string.h>
 
 double cut_inertia(const tled_problem *p, int64_t element)
 {
-    const double share = tled_fraction(p, element);
+    const double share = films_whole(p, element);
     return share < CUT_LEAST && tled_cut(p, element) ? CUT_LEAST : share;
+}
+
+double cut_mass(const tled_problem *p, int64_t element)
+{
+    return tled_law_of(p, element).density * p->side[0] * p->side[1] * p->side[2] * cut_inertia(p, element);
 }
 
 int cut_borrow(tled_problem *p, const model *m, err *e)
@@ -25,7 +31,7 @@ int64_t cut_least(const tled_problem *p)
 {
     int64_t count = 0;
     for (int64_t i = 0; i < p->cut.count; i++)
-        count += tled_fraction(p, p->cut.element[i]) < CUT_LEAST;
+        count += films_whole(p, p->cut.element[i]) < CUT_LEAST;
     return count;
 }
 
@@ -43,7 +49,7 @@ static double weight_of(const float *moments, int corner)
 int cut_weigh(tled_problem *p, err *e)
 {
     const double volume = p->side[0] * p->side[1] * p->side[2];
-    if (!p->cut.count)
+    if (!p->cut.count && !p->films)
         return 0;
     p->weight = mem_array(p->nodes, sizeof *p->weight, "the nodes", e);
     for (int64_t i = 0; p->weight && i < p->elements; i++) {
@@ -55,20 +61,25 @@ int cut_weigh(tled_problem *p, err *e)
     return p->weight ? 0 : -1;
 }
 
+double cut_lighter_of(const tled_problem *p, int64_t element)
+{
+    return tled_fraction(p, element) / cut_inertia(p, element);
+}
+
 void cut_matrix(const tled_problem *p, int64_t element, const float *moments, step_matrix *a)
 {
-    stability_cut_matrix(element_cut_of(moments), cut_lighter(tled_fraction(p, element)), a);
+    stability_cut_matrix(element_cut_of(moments), cut_lighter_of(p, element), a);
 }
 
 stability_twists cut_twists(const tled_problem *p, int64_t element, const float *moments, stability_twists whole)
 {
-    return stability_cut_twists(element_cut_of(moments), cut_lighter(tled_fraction(p, element)), whole);
+    return stability_cut_twists(element_cut_of(moments), cut_lighter_of(p, element), whole);
 }
 
 double cut_raises(const tled_problem *p, int64_t element, const float *moments)
 {
     const stability_gram g = stability_gram_of(element_cut_of(moments));
-    return cut_lighter(tled_fraction(p, element)) * stability_gram_bound(&g);
+    return cut_lighter_of(p, element) * stability_gram_bound(&g);
 }
 
 /* ---- laminates */

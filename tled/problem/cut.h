@@ -19,13 +19,15 @@
 /* By what part of a whole box's mass an element moves: its share; if it is cut, at least CUT_LEAST. */
 double cut_inertia(const tled_problem *p, int64_t element);
 
-/* What the forces of such an element go by over what its mass does. */
+/* Its mass, kg; and what its forces go by over what its mass does, at most 1; of a share that no films take from. */
+double cut_mass(const tled_problem *p, int64_t element);
+double cut_lighter_of(const tled_problem *p, int64_t element);
 ELEMENT_FUNCTION double cut_lighter(double share)
 {
     return share < CUT_LEAST ? share / CUT_LEAST : 1;
 }
 
-/* Makes p->cut and, where any element is cut, p->weight; the latter needs the laws. -1 with e filled. */
+/* Makes p->cut and, where any element is cut or has films, p->weight; the latter needs the laws. -1 with e filled. */
 int cut_borrow(tled_problem *p, const model *m, err *e);
 int cut_weigh(tled_problem *p, err *e);
 

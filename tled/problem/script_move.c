@@ -135,7 +135,7 @@ static move moved_now(const script_reader *r, const script_curve *c)
     move m = move_none();
     if (c->key_count)
         return move_at(r->s, c, r->now->from);
-    if (position && r->now->displacement)
+    if (position && r->now->displacement && c->node_count && r->s->node[c->node_first] < position->rows)
         m.at = pose_fit(position->f64, r->now->displacement, r->s->node + c->node_first, c->node_count);
     return m;
 }

@@ -65,6 +65,26 @@ int script_nodes_in_box(script *s, const model *m, const keyfile *k, const doubl
     return position ? 0 : -1;
 }
 
+/* Bone that films hang on has no nodes, but rows of films (films.h), which count on from the nodes. */
+static int add_films(script *s, const model *m, const char *name, const char *target, int32_t body, int64_t *found,
+                     err *e)
+{
+    const model_array *of = model_find(m, name), *names = model_find(m, "anchor.name");
+    for (int64_t i = 0; of && i < of->rows; i++) {
+        const bool mine =
+            target ? of->i32[i] >= 0 && surface_in_group(names->str[of->i32[i]], target) : of->i32[i] == body;
+        if (mine && node_add(s, model_count(m, "node") + i, e))
+            return -1;
+        *found += mine;
+    }
+    return 0;
+}
+
+static bool is_by_films(const model *m)
+{
+    return model_find(m, "bone.element") != NULL;
+}
+
 int script_nodes_of_surface(script *s, const model *m, const keyfile *k, const script_curve *c, err *e)
 {
     const model_array *anchor = model_need(m, "node.anchor", e), *names = model_need(m, "anchor.name", e);
@@ -77,7 +97,9 @@ int script_nodes_of_surface(script *s, const model *m, const keyfile *k, const s
         return near_unknown(e, k->name, k->line, "rigid surface", c->target, (const char *const *)names->str,
                             names->rows < INT32_MAX ? (int)names->rows : INT32_MAX);
     int64_t found = 0;
-    for (int64_t i = 0; i < anchor->rows; i++) {
+    if (is_by_films(m) && add_films(s, m, "bone.anchor", c->target, -1, &found, e))
+        return -1;
+    for (int64_t i = 0; !is_by_films(m) && i < anchor->rows; i++) {
         int32_t a = anchor->i32[i];
         if (a < 0 || !surface_in_group(names->str[a], c->target))
             continue;
@@ -93,7 +115,9 @@ int script_nodes_of_body(script *s, const model *m, const keyfile *k, int32_t bo
 {
     const model_array *of = model_need(m, "node.body", e);
     int64_t found = 0;
-    for (int64_t i = 0; of && i < of->rows; i++) {
+    if (is_by_films(m) && add_films(s, m, "bone.body", NULL, body, &found, e))
+        return -1;
+    for (int64_t i = 0; of && !is_by_films(m) && i < of->rows; i++) {
         if (of->i32[i] != body)
             continue;
         if (node_add(s, i, e))

@@ -79,9 +79,10 @@ static void displaced_now(const reader *r, int64_t at, double was[3])
         script_value(r->s, c, r->now->from, was);
         return;
     }
+    const bool nodes = c->node_count && r->s->node[c->node_first] < model_count(r->m, "node"); /* and no films */
     for (int a = 0; a < 3; a++) {
         was[a] = 0;
-        for (int32_t i = 0; r->now->displacement && i < c->node_count; i++)
+        for (int32_t i = 0; r->now->displacement && nodes && i < c->node_count; i++)
             was[a] += r->now->displacement[3 * (int64_t)r->s->node[c->node_first + i] + a] / c->node_count;
     }
 }
@@ -385,8 +386,9 @@ static int gather_keys(reader *r, err *e)
 static int refuse_conflicts(reader *r, err *e)
 {
     const script *s = r->s;
-    int64_t nodes = model_count(r->m, "node");
-    int32_t *owner = mem_array(3 * (nodes < 0 ? 0 : nodes), sizeof *owner, "the script's nodes", e); /* curve + 1 */
+    const int64_t nodes = model_count(r->m, "node"), films = model_count(r->m, "bone");
+    int32_t *owner = mem_array(3 * ((nodes < 0 ? 0 : nodes) + (films < 0 ? 0 : films)), sizeof *owner,
+                               "the script's nodes", e); /* curve + 1 */
     int status = owner ? 0 : -1;
     for (int64_t i = 0; i < s->curves && !status; i++) {
         const script_curve *c = &s->curve[i];

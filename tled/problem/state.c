@@ -8,6 +8,7 @@
 #include "tled/problem/bodies.h"
 #include "tled/problem/conforming_step.h"
 #include "tled/problem/cut.h"
+#include "tled/problem/films.h"
 #include "tled/problem/followers.h"
 #include "tled/problem/loads.h"
 #include "tled/problem/muscle_fibre.h"
@@ -72,6 +73,7 @@ void tled_problem_free(tled_problem *p)
     free(p->border);
     free(p->hold);
     bodies_free(p->bodies);
+    films_free(p->films);
     forget_loads(p);
     fields_free(&p->at_start);
     memset(p, 0, sizeof *p);
@@ -403,6 +405,8 @@ static int make_corners(tled_problem *p, err *e)
 static void make_holds(tled_problem *p, const model *m)
 {
     const model_array *rigid = model_find(m, "node.rigid");
+    for (int64_t i = 0; i < films_count(p) * 3; i++)
+        p->hold[3 * p->nodes + i] = HOLD_STILL;
     for (int64_t i = 0; i < p->nodes * 3; i++)
         p->hold[i] = rigid && rigid->u8[i / 3] ? HOLD_STILL : HOLD_FREE;
     for (int64_t c = 0; c < p->script->curves; c++) {
@@ -432,13 +436,15 @@ int tled_problem_make(tled_problem *p, const model *m, const script *s, hourglas
         memcpy(p->side, l.spacing, sizeof p->side);
     p->corner = mem_array(boxes ? p->nodes : p->elements, 8 * sizeof *p->corner, "the nodes", e);
     p->mass = mem_array(p->nodes, sizeof *p->mass, "the nodes", e);
-    p->hold = mem_array(p->nodes, 3 * sizeof *p->hold, "the nodes", e);
-    if (!p->corner || !p->mass || !p->hold)
+    if (!p->corner || !p->mass)
         return -1;
     if ((boxes && check_boxes(p, e)) || check_fractions(p, e) || check_mixes(p, e) || (boxes && join_own(p, m, e)) ||
-        cut_borrow(p, m, e) || border_borrow(p, m, e) || make_laws(p, m, e) || make_fields(p, e) ||
-        (boxes ? make_corners(p, e) : conforming_corners(p, e)) || cut_weigh(p, e) || loads_make(p, m, e) ||
-        followers_make(p, m, e) || bodies_make(p, m, e))
+        cut_borrow(p, m, e) || films_share(p, m, e) || border_borrow(p, m, e) || make_laws(p, m, e) ||
+        make_fields(p, e) || (boxes ? make_corners(p, e) : conforming_corners(p, e)) || cut_weigh(p, e) ||
+        films_make(p, m, e) || loads_make(p, m, e) || followers_make(p, m, e) || bodies_make(p, m, e))
+        return -1;
+    p->hold = mem_array(p->nodes + films_count(p), 3 * sizeof *p->hold, "the nodes", e);
+    if (!p->hold)
         return -1;
     if (!boxes)
         conforming_join(p);

@@ -72,9 +72,9 @@ typedef struct tled_problem {
     int32_t *corner_start; /* nodes + 1; or NULL. Without a lattice: node n's are
                        * corner[corner_start[n]] and on, in the elements' order */
     double *mass;          /* nodes: kg */
-    double *weight;        /* nodes, kg: what gravity acts on, where elements are cut (cut.h); NULL: the mass */
-    int32_t *hold;         /* nodes x 3: HOLD_*, or as moves.h says */
-    int64_t held;          /* nodes with any component held */
+    double *weight; /* nodes, kg: what gravity acts on, where elements are cut (cut.h) or have films; NULL: the mass */
+    int32_t *hold;  /* nodes x 3, then films x 3: HOLD_*, or as moves.h says */
+    int64_t held;   /* nodes with any component held */
     int32_t *force_start;  /* nodes + 1: entries of node n are force_start[n] to force_start[n + 1] - 1 */
     int32_t *force_curve;  /* entries: the curve whose value the node gets a share of */
     int32_t *force_spring; /* entries: the curve of a spring's factor, or -1 (loads.h) */
@@ -89,6 +89,7 @@ typedef struct tled_problem {
     field_values at_start;             /* and the one that the run begins from: m, m/s */
     const struct collider *collider;   /* what presses (collider.h), or NULL */
     struct bodies *bodies;             /* the model's rigid bodies (bodies.h), owned; NULL: none */
+    struct films *films;               /* of tissue on bone (films.h), owned; NULL: none */
     struct followers *followers;       /* the script's pressures (followers.h), owned; NULL: none */
 } tled_problem;
 

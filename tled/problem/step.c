@@ -2,6 +2,7 @@
 
 #include "tled/problem/conforming_step.h"
 #include "tled/problem/cut.h"
+#include "tled/problem/films.h"
 #include "tled/problem/muscle_fibre.h"
 
 #include <math.h>
@@ -127,13 +128,28 @@ static double higher(const tled_problem *p, int64_t element, double highest)
                 fibres.sets.count ? fibred_square_at_rest(p, element, &fibres, highest) : square_at_rest(p, element));
 }
 
-double step_at_rest(const tled_problem *p, int32_t *volume)
+double step_element_at_rest(const tled_problem *p, int64_t element)
+{
+    const element_tensor rest = {0};
+    const float *moments = tled_cut(p, element);
+    const tled_law law = tled_law_of(p, element);
+    const step_fibres fibres = step_fibres_of(p, element, NULL);
+    double square = square_at_rest(p, element);
+    if (fibres.sets.count)
+        square = fmax(law.twists, step_range_of(p, &law, rest, &fibres).high);
+    if (!moments)
+        return cut_lighter_of(p, element) * square;
+    const stability_twists whole = {law.twists, 0};
+    return cut_raises(p, element, moments) * square + cut_twists(p, element, moments, whole).more;
+}
+
+double step_elements_at_rest(const tled_problem *p, int32_t *volume)
 {
     double highest = 0;
     if (p->conforming) {
         if (volume)
             *volume = p->element_volume[p->conforming->stiffest];
-        return 2 / sqrt(p->conforming->square);
+        return p->conforming->square;
     }
     for (int64_t i = 0; i < p->elements; i++) {
         const double square = higher(p, i, highest);
@@ -141,7 +157,13 @@ double step_at_rest(const tled_problem *p, int32_t *volume)
             *volume = p->element_volume[i];
         highest = square;
     }
-    return 2 / sqrt(highest);
+    return highest;
+}
+
+double step_at_rest(const tled_problem *p, int32_t *volume)
+{
+    const double elements = step_elements_at_rest(p, volume);
+    return 2 / sqrt(p->films ? fmax(elements, p->films->square) : elements);
 }
 
 double step_rate(double stable, int64_t *check)

@@ -20,8 +20,12 @@
 #include "physics/stability.h"
 #include "tled/problem/state.h"
 
-/* The stable step at rest, s: the least of all elements. *volume (may be NULL) gets whose. */
+/* The stable step at rest, s: the least of all elements, with their films. *volume (may be NULL) gets whose. */
 double step_at_rest(const tled_problem *p, int32_t *volume);
+
+/* 1/s2, at rest: the square of the highest frequency of all elements; no less than that of one, with its whole mass. */
+double step_elements_at_rest(const tled_problem *p, int32_t *volume);
+double step_element_at_rest(const tled_problem *p, int64_t element);
 
 /* Of the fibres of an element: how it is pulled along its fibre and along that of its second volume, and what resists
  * being stretched. */

@@ -1,6 +1,7 @@
 #include "tled/problem/support.h"
 
 #include "base/mem.h"
+#include "tled/problem/films.h"
 #include "tled/problem/followers.h"
 
 #include <math.h>
@@ -100,6 +101,8 @@ static int32_t search_from_held(const tled_problem *p, search *s, unsigned compo
     for (int64_t n = 0; n < p->nodes; n++)
         if (is_held(p, n, components))
             reach_node(s, (int32_t)n, 0);
+    for (int64_t i = 0; p->films && i < p->films->nodes; i++) /* films hold all components */
+        reach_node(s, p->films->node[i], 0);
     spread(p, s, 0);
     return s->count ? s->steps[s->queue[s->count - 1]] : 0;
 }
@@ -164,7 +167,7 @@ int support_of(const tled_problem *p, support *of, err *e)
 static int check_loose(const support *of, const tled_problem *p, bool to_rest, notes *warnings, err *e)
 {
     char what[200] = "the model: no node is rigid or displaced";
-    if (p->held && of->loose)
+    if ((p->held || p->films) && of->loose)
         snprintf(what, sizeof what, "%lld %s of the model, %lld elements, the first of them %lld (volume '%.100s')",
                  (long long)of->loose, of->loose == 1 ? "part" : "parts", (long long)of->in_them, (long long)of->first,
                  p->volume[p->element_volume[of->first]].name);

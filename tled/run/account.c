@@ -2,6 +2,7 @@
 
 #include "base/mem.h"
 #include "tled/problem/collider.h"
+#include "tled/problem/film_strain.h"
 #include "tled/problem/followers.h"
 #include "tled/problem/muscle_fibre.h"
 
@@ -17,6 +18,8 @@ typedef struct moment {
     double *displacement, *internal, *push; /* nodes x 3; push: NULL without a probe */
     double *pressed;                        /* likewise, N: by pressures; NULL without */
     double *stretch, *pull; /* elements x 2: of either fibre, and of springs in series, Pa; NULL without muscles */
+    element_tensor *film;   /* films, Pa: their stress; NULL without, as is: */
+    double *film_stretch;   /* films x 2: as stretch */
     double *curves;
     double driven; /* J: kinetic energy where displacements are prescribed */
     double first;  /* J: held at the first reading */
@@ -47,19 +50,25 @@ static double stretch_of(const float *along, int64_t i, element_tensor h)
     return element_length(element_fibre_now(h, a));
 }
 
-/* The work (J) of the muscle that the volume is, along one of an element's fibres, since the moment before.
- * rest (m3): of the tissue that is its. */
-static double muscle_work(const account *a, int64_t i, int fibre, int32_t volume, double rest)
+/* The work (J) of the muscle that the volume is while a fibre's stretch changes, since the moment before. rest (m3): of
+ * the tissue that is its. */
+static double tension_work(const account *a, int32_t volume, double was, double is, double rest)
 {
     const tled_problem *p = a->p;
-    const double was = a->before.stretch[2 * i + fibre], is = a->now.stretch[2 * i + fibre];
-    if (p->volume[volume].serial)
-        return -rest * (a->before.pull[2 * i + fibre] + a->now.pull[2 * i + fibre]) / 2 * (is - was);
     const double tension = (tled_tension(p, volume, a->before.curves) + tled_tension(p, volume, a->now.curves)) / 2;
     if (tension == 0)
         return 0;
     const double more = 1 + p->volume[volume].muscle[MUSCLE_LESS]; /* 1/optimum */
     return -rest * tension / more * (muscle_force_length_sum(is * more) - muscle_force_length_sum(was * more));
+}
+
+/* Along one of an element's fibres. */
+static double muscle_work(const account *a, int64_t i, int fibre, int32_t volume, double rest)
+{
+    const double was = a->before.stretch[2 * i + fibre], is = a->now.stretch[2 * i + fibre];
+    if (a->p->volume[volume].serial)
+        return -rest * (a->before.pull[2 * i + fibre] + a->now.pull[2 * i + fibre]) / 2 * (is - was);
+    return tension_work(a, volume, was, is, rest);
 }
 
 /* What the spring of a muscle pulls with, Pa, of the muscle alone. */
@@ -95,6 +104,66 @@ static void add_element(account *a, int64_t i, element_shape box, account_sums *
         add_muscles(a, i, &d, sum);
     if (a->has_muscles)
         sum->falling += muscle_fibre_falls(a->p, i, a->now.curves, d.h, d.law.mu);
+}
+
+/* What muscles in a film did. */
+static double film_muscles(account *a, int64_t i, element_tensor h)
+{
+    const tled_problem *p = a->p;
+    const int64_t element = p->films->element[i];
+    const float *const along[2] = {p->fibre, p->mixfibre};
+    const int32_t volume[2] = {p->element_volume[element], tled_mix(p, element)};
+    const double share[2] = {1 - tled_mixture(p, element), tled_mixture(p, element)};
+    const double rest = p->films->area[i] * p->films->depth[i];
+    double sum = 0;
+    for (int k = 0; k < 2; k++) {
+        if (!along[k] || volume[k] < 0 || p->volume[volume[k]].contract < 0)
+            continue;
+        a->now.film_stretch[2 * i + k] = stretch_of(along[k], element, h);
+        if (a->before.known)
+            sum += tension_work(a, volume[k], a->before.film_stretch[2 * i + k], a->now.film_stretch[2 * i + k],
+                                rest * share[k]);
+    }
+    return sum;
+}
+
+/* What the bone did to a film as it moved, since the moment before: while its element stays, the film's gradient
+ * changes by d((R - I)(I + n n)/2) - du n/d. */
+static double bone_work(const account *a, int64_t i)
+{
+    const films *f = a->p->films;
+    const double *n = f->normal + 3 * i;
+    const element_tensor *s = &a->before.film[i], *t = &a->now.film[i];
+    const double stress[3][3] = {{s->xx + t->xx, s->xy + t->xy, s->xz + t->xz},
+                                 {s->yx + t->yx, s->yy + t->yy, s->yz + t->yz},
+                                 {s->zx + t->zx, s->zy + t->zy, s->zz + t->zz}};
+    double was[3], is[3], turned[3][3], turn[3][3], sum = 0;
+    films_bone(a->p, i, a->before.curves, was, turned);
+    films_bone(a->p, i, a->now.curves, is, turn);
+    for (int r = 0; r < 3; r++) {
+        double along = 0;
+        for (int k = 0; k < 3; k++)
+            along += (turn[r][k] - turned[r][k]) * n[k];
+        for (int k = 0; k < 3; k++)
+            sum +=
+                stress[r][k] * ((turn[r][k] - turned[r][k] + along * n[k]) / 2 - (is[r] - was[r]) / f->depth[i] * n[k]);
+    }
+    return f->area[i] * f->depth[i] * sum / 2;
+}
+
+static void read_films(account *a)
+{
+    const tled_problem *p = a->p;
+    for (int64_t i = 0; i < films_count(p); i++) {
+        const int32_t *node = p->element_node + 8 * (int64_t)p->films->element[i];
+        const element_tensor h = films_gradient(p, i, a->now.displacement, node, a->now.curves);
+        a->now.film[i] = films_stress(p, i, h, a->now.curves);
+        a->now.sums.tissue.strain += films_energy(p, i, h);
+        if (a->now.film_stretch)
+            a->now.sums.muscles += film_muscles(a, i, h);
+        if (a->before.known)
+            a->now.sums.held += bone_work(a, i);
+    }
 }
 
 static void element_work(void *context, int64_t chunk, int64_t from, int64_t to)
@@ -298,6 +367,7 @@ const account_sums *account_read(account *a, const tled_executor *b, tled_state 
     a->view = strained_view_of(p, a->now.displacement, a->before.sums.tissue.quality.element);
     pool_run(a->threads, p->elements, CHUNK, element_work, a);
     sum_elements(a);
+    read_films(a);
     pool_run(a->threads, p->nodes, CHUNK, node_work, a);
     a->now.driven = sum_nodes(a, &mass);
     close_sums(a, damping, mass);
@@ -333,6 +403,8 @@ static void copy_moment(const tled_problem *p, const moment *from, moment *to)
     to->stretch = own.stretch;
     to->pull = own.pull;
     to->curves = own.curves;
+    to->film = own.film;
+    to->film_stretch = own.film_stretch;
     memcpy(to->displacement, from->displacement, size);
     memcpy(to->internal, from->internal, size);
     memcpy(to->curves, from->curves, 3 * (size_t)p->script->curves * sizeof(double));
@@ -340,6 +412,10 @@ static void copy_moment(const tled_problem *p, const moment *from, moment *to)
         memcpy(to->push, from->push, size);
     if (to->pressed)
         memcpy(to->pressed, from->pressed, size);
+    if (to->film)
+        memcpy(to->film, from->film, (size_t)films_count(p) * sizeof *to->film);
+    if (to->film_stretch)
+        memcpy(to->film_stretch, from->film_stretch, 2 * (size_t)films_count(p) * sizeof(double));
     if (to->stretch)
         memcpy(to->stretch, from->stretch, 2 * (size_t)p->elements * sizeof(double));
     if (to->pull)
@@ -398,6 +474,10 @@ static int make_moment(const tled_problem *p, moment *m, err *e)
         return -1;
     if (p->followers && make_numbers(p->nodes, 3, &m->pressed, e))
         return -1;
+    if (p->films && !(m->film = mem_array(films_count(p), sizeof *m->film, "the log", e)))
+        return -1;
+    if (p->films && contracts(p) && make_numbers(films_count(p), 2, &m->film_stretch, e))
+        return -1;
     if (p->serial && make_numbers(p->elements, 2, &m->pull, e))
         return -1;
     return p->serial || contracts(p) ? make_numbers(p->elements, 2, &m->stretch, e) : 0;
@@ -405,6 +485,8 @@ static int make_moment(const tled_problem *p, moment *m, err *e)
 
 static void free_moment(moment *m)
 {
+    free(m->film);
+    free(m->film_stretch);
     free(m->displacement);
     free(m->internal);
     free(m->curves);

@@ -7,6 +7,7 @@
 #include "tled/problem/conforming_step.h"
 #include "tled/problem/cut.h"
 #include "tled/problem/deformed.h"
+#include "tled/problem/film_strain.h"
 #include "tled/problem/loads.h"
 #include "tled/problem/muscle_fibre.h"
 #include "tled/problem/step.h"
@@ -195,6 +196,13 @@ static int need(double **array, int64_t nodes, err *e)
     return *array ? 0 : -1;
 }
 
+static void read_films(monitor *w, tled_sums *sum)
+{
+    const double square = sum->frequency_element < 0 ? w->p->films->elements_square : sum->frequency;
+    sum->strain += films_energies(w->p, w->displacement, w->curves);
+    w->film_square = sum->broken < 0 ? films_square(&w->films, w->threads, w->displacement, w->curves, square) : 0;
+}
+
 /* On this machine's threads. */
 static int read_here(monitor *w, const tled_executor *b, tled_state *state, tled_sums *sum, err *e)
 {
@@ -211,6 +219,8 @@ static int read_here(monitor *w, const tled_executor *b, tled_state *state, tled
     }
     pool_run(w->threads, p->elements, CHUNK, element_work, w);
     sum_elements(w, sum);
+    if (p->films)
+        read_films(w, sum);
     pool_run(w->threads, p->nodes, CHUNK, node_work, w);
     sum_nodes(w, sum);
     return 0;
@@ -232,6 +242,8 @@ static void take_sums(monitor *w, const tled_sums *sum)
     s->broken = sum->broken;
     s->stable_element = sum->frequency_element;
     s->stable = sum->frequency_element < 0 ? w->rest_step : 2 / sqrt(sum->frequency);
+    if (w->film_square > 4 / (s->stable * s->stable))
+        s->stable = 2 / sqrt(w->film_square);
     s->stable = followers_step(w->load_square + w->spring_square, collider_step(w->p, s->stable));
 }
 
@@ -313,7 +325,7 @@ monitor *monitor_create(const tled_problem *p, pool *threads, err *e)
     w->rest_step = step_at_rest(p, NULL);
     w->raise = 1.01;
     w->part = mem_array(pool_chunks(most, CHUNK), sizeof *w->part, "the monitor", e);
-    if (!w->part || allocate_script(w, e)) {
+    if (!w->part || allocate_script(w, e) || films_room(&w->films, p, e)) {
         monitor_destroy(w);
         return NULL;
     }
@@ -332,5 +344,6 @@ void monitor_destroy(monitor *w)
     free(w->curves);
     free(w->part);
     followers_room_free(&w->followers);
+    films_room_free(&w->films);
     free(w);
 }

@@ -6,6 +6,7 @@
 #ifndef SINEW_MONITOR_H
 #define SINEW_MONITOR_H
 
+#include "tled/problem/films.h"
 #include "tled/problem/followers.h"
 #include "tled/problem/tled_executor.h"
 
@@ -36,6 +37,8 @@ typedef struct monitor {
     double *curves;                              /* values at its time */
     struct monitor_part *part;                   /* chunks */
     followers_work followers;
+    films_work films;
+    double film_square;     /* 1/s2: of elements and films, of the state read last */
     double load_square;     /* 1/s2: what pressures raise the square of the frequency by */
     double spring_square;   /* 1/s2: and springs */
     tled_question question; /* of the last reading */

@@ -1,6 +1,7 @@
 #include "tled/run/tled_words.h"
 
 #include "tled/problem/cut.h"
+#include "tled/problem/films.h"
 #include "tled/run/timeline.h"
 #include "tled/run/tled_live.h"
 
@@ -17,6 +18,8 @@ void words_start(const session *s, const char *device, const struct options *o)
         snprintf(sides, sizeof sides, "any shape, %.4g mm in the mean", 1e3 * p->side[0]);
     tool_say(s->t, "%lld elements of %s, %lld nodes, %lld held; %s, %s precision", (long long)p->elements, sides,
              (long long)p->nodes, (long long)p->held, device, o->precision ? "single" : "double");
+    if (p->films)
+        tool_say(s->t, "%lld films hang on bone", (long long)films_count(p));
     const int64_t least = cut_least(p);
     if (least)
         tool_say(s->t, "%lld cut element%s, of which less than %g is enclosed, the mass is that of %g",
