@@ -5,6 +5,7 @@
 #include "cli/tool.h"
 #include "fibre_lines.h"
 #include "fibre_rule.h"
+#include "film.h"
 #include "held_report.h"
 #include "model/finite.h"
 #include "model/stage.h"
@@ -21,7 +22,7 @@ struct options {
     opt_list rigid, part, fibre, lines_in;
     const char *rigid_file, *lines;
     double strictness;
-    bool report;
+    bool surface, report;
 };
 
 #define TO(field) offsetof(struct options, field)
@@ -34,6 +35,8 @@ static const opt option_list[] = {
      "bone that moves by itself: jaw=skull_jaw,... or jaw=FILE.obj, a closed surface around it"},
     {OPT_ACTION, 0, "strictness", "S", OPT_NUMBER, TO(strictness), 0, 0, NULL, 0,
      "fix nodes this near to a surface, up to 1 [voxel sides; default 0.75]"},
+    {OPT_ACTION, 0, "surface", NULL, OPT_FLAG, TO(surface), 0, 0, NULL, 0,
+     "hold elements at the surface itself, by films of tissue, in place of nodes near it"},
     {OPT_ACTION, 0, "fibre", "[MUSCLES=]RULE", OPT_LIST, TO(fibre), 0, 0, MUSCLE_RULE_NAMES "|@muscle.name=", 0,
      "how fibres run: " MUSCLE_RULE_NAMES " [default auto]"},
     {OPT_ACTION, 0, "fibre-lines", "FILE.obj", OPT_TEXT, TO(lines), 0, 0, NULL, OPT_FILE,
@@ -107,6 +110,16 @@ static void say_rules(const tool *t, const muscles *list)
                     fibre_rules[list->of[i].rule].what);
 }
 
+/* Films in place of rigid nodes, once all is known that these are for besides. */
+static int hold_surface(const tool *t, model *m, const rigid *r, notes *warnings, err *e)
+{
+    double area = 0;
+    if (film_make(m, r, &area, warnings, e))
+        return -1;
+    tool_say(t, "bone holds the tissue by %lld films, of %.4g cm2", (long long)model_count(m, "bone"), 1e4 * area);
+    return 0;
+}
+
 static int work(const struct options *o, const tool *t, model *m, notes *warnings, err *e)
 {
     rigid r = {0};
@@ -116,10 +129,12 @@ static int work(const struct options *o, const tool *t, model *m, notes *warning
     int rc = -1, count = tool_threads(t, e);
     if (count < 0 || finite_elements(m, NULL, e))
         return -1;
+    film_drop(m, warnings);
     threads = pool_create(count, e);
     if (!threads || collect(o, m, &file, &r, warnings, e) || anchor_nodes(m, &r, o->strictness, warnings, e) ||
         part_make(m, &o->part, warnings, e) || muscle_make(m, &o->fibre, threads, &list, warnings, e) ||
-        (o->lines && fibre_lines_apply(m, o->lines, &o->lines_in, threads, e)))
+        (o->lines && fibre_lines_apply(m, o->lines, &o->lines_in, threads, e)) ||
+        (o->surface && hold_surface(t, m, &r, warnings, e)))
         goto out;
     check_held(&r, warnings);
     say_rules(t, &list);

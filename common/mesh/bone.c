@@ -94,6 +94,7 @@ int bone_find(bone *b, const bound *of, const model *m, err *e)
     if (!name || !anchor)
         return 0;
     const model_array *body = model_find(m, "node.body");
+    b->by_films = model_find(m, "bone.element") != NULL;
     b->body = body ? body->i32 : NULL;
     b->bodies = body ? model_count(m, "body") : 0;
     b->moved = mem_array(b->bodies, sizeof *b->moved, "rigid bodies", e);
@@ -123,7 +124,7 @@ void bone_displacement(const bone *b, const motion *of, int64_t vertex, double *
         pose_apply(&b->moved[body], rest, d);
         for (int a = 0; a < 3; a++)
             d[a] -= rest[a];
-    } else if (node >= 0)
+    } else if (node >= 0 && !b->by_films)
         memcpy(d, &of->u[3 * (int64_t)node], 3 * sizeof *d);
     else
         motion_displacement(of, vertex, d);
@@ -132,7 +133,7 @@ void bone_displacement(const bone *b, const motion *of, int64_t vertex, double *
 void bone_gradient(const bone *b, const motion *of, int64_t vertex, double *f)
 {
     const int32_t body = body_of(b, vertex);
-    if (b->node[vertex] < 0) {
+    if (b->node[vertex] < 0 || (b->by_films && body < 0)) {
         motion_gradient(of, vertex, f);
         return;
     }

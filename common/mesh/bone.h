@@ -1,8 +1,9 @@
 /* The vertices that bone carries: those of a face on a rigid surface (one that attach wrote to anchor.name). Such a
  * vertex moves with a node that its surface holds, not between the eight nodes of an element, some of which are free:
  * so that bone does not bend with the tissue. Where the node belongs to a rigid body, and the frame says how that has
- * moved, the vertex moves with the body, as it turns about the same place. This is ours; W&M bind every vertex alike.
- * The caller owns a bone.
+ * moved, the vertex moves with the body, as it turns about the same place. Bone that holds the tissue by films
+ * (bone.element) has no nodes of its own: without a body, its vertices move with the tissue that is there. This is
+ * ours; W&M bind every vertex alike. The caller owns a bone.
  */
 #ifndef SINEW_BONE_H
 #define SINEW_BONE_H
@@ -17,6 +18,7 @@ typedef struct bone {
     pose *moved;         /* bodies: how each has moved from rest */
     int64_t bodies;
     bool is_known; /* whether the frame says how they have */
+    bool by_films; /* nodes do not tell how bone moves, as it holds the tissue by films: bodies alone do */
 } bone;
 
 /* Finds the carried vertices of a bound surface and, for each, the nearest node that its anchor holds. A model without

@@ -1,0 +1,353 @@
+#include "film.h"
+
+#include "base/mem.h"
+#include "film_sides.h"
+#include "mesh/cut_moments.h"
+#include "mesh/held.h"
+#include "voxel_cut.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { LAYERS = 4 }; /* of a film: its volume is summed in the middle of each */
+
+/* A piece of a film, in one element. */
+typedef struct patch {
+    int32_t element, anchor;
+    double point[3], normal[3]; /* times area */
+    double area, depth;         /* m2; m, times area */
+    int64_t number;
+} patch;
+
+typedef struct maker {
+    const film_sides *sides;
+    const film_triangle *at; /* the one at hand */
+    patch *patch;
+    int64_t patches, room;
+    double *part; /* elements x (1 + CUT_MOMENTS): what films have of its volume, and sums of its coordinates over it */
+    double normal[3], depth, wider; /* of the triangle at hand: in how far its films are wider than at their points */
+    double thick;                   /* m: of the layer at hand */
+    double voxel;                   /* m3 */
+    err *e;
+} maker;
+
+/* A triangle that is to be moved by d along ways: its corners at x + d way. */
+typedef struct moving {
+    double x[3][3], way[3][3];
+} moving;
+
+static void moved_by(const moving *t, double d, double to[3][3])
+{
+    for (int i = 0; i < 9; i++)
+        to[i / 3][i % 3] = t->x[i / 3][i % 3] + d * t->way[i / 3][i % 3];
+}
+
+static double area_at(const moving *t, double d, double normal[3])
+{
+    double x[3][3];
+    moved_by(t, d, x);
+    return film_normal(x[0], x[1], x[2], normal) / 2;
+}
+
+/* ---- pieces */
+
+static int take_patch(void *context, const voxel_piece *piece)
+{
+    maker *k = context;
+    const int32_t element = film_element_near(k->sides, piece->cell, piece->middle);
+    if (element < 0)
+        return 0;
+    if (MEM_ROOM(&k->patch, &k->room, k->patches + 1, "the films", k->e))
+        return -1;
+    const double area = piece->area * k->wider;
+    patch *to = &k->patch[k->patches];
+    *to = (patch){element, k->at->anchor, {0}, {0}, area, area * k->depth, k->patches};
+    for (int a = 0; a < 3; a++) {
+        to->point[a] = area * piece->middle[a];
+        to->normal[a] = area * k->normal[a];
+    }
+    k->patches++;
+    return 0;
+}
+
+/* Adds the products of places to the sums of an element, by Simpson's rule on triangles: their sides' middles. */
+static void add_places(const maker *k, const double a[3], const double b[3], const double cell[3], double volume,
+                       double *to)
+{
+    const lattice *l = &k->sides->grid;
+    double u[3];
+    for (int i = 0; i < 3; i++)
+        u[i] = 2 * (((a[i] + b[i]) / 2 - l->origin[i]) / l->spacing[i] - cell[i]) - 1;
+    const double by[CUT_MOMENTS] = {u[0], u[1], u[2], u[0] * u[1], u[1] * u[2], u[2] * u[0], u[0] * u[1] * u[2]};
+    for (int i = 0; i < CUT_MOMENTS; i++)
+        to[i] += volume * by[i];
+}
+
+static int take_layer(void *context, const voxel_piece *piece)
+{
+    maker *k = context;
+    const int32_t element = film_element_in(k->sides, piece->cell, piece->middle);
+    const double cell[3] = {(double)piece->cell[0], (double)piece->cell[1], (double)piece->cell[2]};
+    if (element < 0)
+        return 0;
+    double *to = k->part + (1 + CUT_MOMENTS) * (int64_t)element;
+    to[0] += piece->area * k->thick;
+    for (int i = 1; i + 1 < piece->corners; i++) {
+        const double *a = piece->corner[0], *b = piece->corner[i], *c = piece->corner[i + 1];
+        double n[3];
+        const double third = film_normal(a, b, c, n) / 2 * k->thick / 3;
+        add_places(k, a, b, cell, third, to + 1);
+        add_places(k, b, c, cell, third, to + 1);
+        add_places(k, c, a, cell, third, to + 1);
+    }
+    return 0;
+}
+
+/* ---- triangles */
+
+/* Half a voxel, or less where there is no tissue twice as deep: of a sheet that is thinner than a voxel films are a
+ * half. 0: there is none at all. */
+static double depth_of(const film_sides *s, const moving *t, const double normal[3])
+{
+    double depth = film_voxel(s, normal) / 2, x[3];
+    for (int tries = 0; tries < 4; tries++, depth /= 2) {
+        for (int a = 0; a < 3; a++)
+            x[a] = (t->x[0][a] + t->x[1][a] + t->x[2][a]) / 3 + 2 * depth * normal[a];
+        if (film_share_at(s, x) > 0)
+            return depth;
+    }
+    return 0;
+}
+
+/* The films of a triangle that is small enough. */
+static int add_films(maker *k, const moving *t)
+{
+    const lattice *l = &k->sides->grid;
+    double x[3][3], n[3], from;
+    area_at(t, 0, k->normal);
+    k->depth = depth_of(k->sides, t, k->normal);
+    if (!(k->depth > 0))
+        return 0;
+    moved_by(t, k->depth, x);
+    k->wider = area_at(t, k->depth / 2, n) / area_at(t, k->depth, n);
+    if (!isfinite(k->wider) || voxel_cut(l, x, take_patch, k))
+        return isfinite(k->wider) ? -1 : 0;
+    from = film_begins(k->sides, k->at, k->normal);
+    k->thick = (k->depth - from) / LAYERS;
+    for (int i = 0; i < LAYERS; i++) {
+        moved_by(t, from + (i + .5) * k->thick, x);
+        voxel_cut(l, x, take_layer, k); /* never fails */
+    }
+    return 0;
+}
+
+static double side_of(const moving *t, int i)
+{
+    double square = 0;
+    for (int a = 0; a < 3; a++)
+        square += pow(t->x[(i + 1) % 3][a] - t->x[i][a], 2);
+    return square;
+}
+
+/* Halves a triangle at its longest side, i. */
+static void halve(const moving *t, int i, moving *one, moving *other)
+{
+    const int j = (i + 1) % 3;
+    *one = *other = *t;
+    for (int a = 0; a < 3; a++) {
+        one->x[j][a] = other->x[i][a] = (t->x[i][a] + t->x[j][a]) / 2;
+        one->way[j][a] = other->way[i][a] = (t->way[i][a] + t->way[j][a]) / 2;
+    }
+}
+
+/* Triangles of which a side is longer than a voxel are halved, as the depth of films may change across them. */
+static int add_triangle(maker *k, const moving *t)
+{
+    const double *h = k->sides->grid.spacing, least = fmin(h[0], fmin(h[1], h[2]));
+    moving waiting[64] = {*t};
+    for (int count = 1; count > 0;) {
+        const moving one = waiting[--count];
+        int longest = 0;
+        for (int i = 1; i < 3; i++)
+            longest = side_of(&one, i) > side_of(&one, longest) ? i : longest;
+        if (side_of(&one, longest) > least * least && count + 2 <= 64) {
+            halve(&one, longest, &waiting[count], &waiting[count + 1]);
+            count += 2;
+        } else if (add_films(k, &one)) {
+            return -1;
+        }
+    }
+    return 0;
+}
+
+/* To one side, or to both. */
+static int add_sides(maker *k)
+{
+    const film_triangle *of = k->at;
+    for (int side = 1; side >= -1; side -= 2) {
+        moving t;
+        if (!(of->sides & (side > 0 ? FILM_ABOVE : FILM_BELOW)))
+            continue;
+        film_ways(k->sides, of, side, t.x, t.way);
+        if (side < 0) { /* so that its normal turns too */
+            const moving turned = t;
+            memcpy(t.x[1], turned.x[2], sizeof t.x[1]), memcpy(t.x[2], turned.x[1], sizeof t.x[2]);
+            memcpy(t.way[1], turned.way[2], sizeof t.way[1]), memcpy(t.way[2], turned.way[1], sizeof t.way[2]);
+        }
+        if (add_triangle(k, &t))
+            return -1;
+    }
+    return 0;
+}
+
+/* ---- arrays */
+
+static int by_element(const void *a, const void *b)
+{
+    const patch *p = a, *q = b;
+    if (p->element != q->element)
+        return p->element < q->element ? -1 : 1;
+    if (p->anchor != q->anchor)
+        return p->anchor < q->anchor ? -1 : 1;
+    return (p->number > q->number) - (p->number < q->number);
+}
+
+static double dot(const double *a, const double *b)
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/* Joins the pieces of an element that are one surface's and face one way: of a thin plate, the sides stay apart. */
+static void join(maker *k)
+{
+    int64_t count = 0, first = 0;
+    qsort(k->patch, (size_t)k->patches, sizeof *k->patch, by_element);
+    for (int64_t i = 0; i < k->patches; i++) {
+        const patch *from = &k->patch[i];
+        patch *to = NULL;
+        if (i && (from->element != k->patch[count - 1].element || from->anchor != k->patch[count - 1].anchor))
+            first = count;
+        for (int64_t j = first; j < count && !to; j++)
+            to = dot(k->patch[j].normal, from->normal) > 0 ? &k->patch[j] : NULL;
+        if (!to) {
+            k->patch[count++] = *from;
+            continue;
+        }
+        for (int a = 0; a < 3; a++) {
+            to->point[a] += from->point[a];
+            to->normal[a] += from->normal[a];
+        }
+        to->area += from->area;
+        to->depth += from->depth;
+    }
+    k->patches = count;
+}
+
+/* The body of the node nearest to a film that its surface holds. */
+static int add_bodies(const maker *k, model *m, const double *point, err *e)
+{
+    const model_array *body = model_find(m, "node.body"), *anchor = model_find(m, "node.anchor");
+    held nearest;
+    if (!body)
+        return 0;
+    model_array *to = model_add(m, "bone.body", e);
+    if (!to || held_build(&nearest, model_find(m, "node.position")->f64, anchor->i32, anchor->rows,
+                          (int32_t)model_count(m, "anchor"), e))
+        return -1;
+    for (int64_t i = 0; i < k->patches; i++) {
+        const int32_t node = held_nearest(&nearest, k->patch[i].anchor, point + 3 * i);
+        to->i32[i] = node < 0 ? -1 : body->i32[node];
+    }
+    held_free(&nearest);
+    return 0;
+}
+
+static int write_bone(const maker *k, model *m, double *area, err *e)
+{
+    if (model_axis_add(m, "bone", k->patches, e))
+        return -1;
+    model_array *element = model_add(m, "bone.element", e), *anchor = element ? model_add(m, "bone.anchor", e) : NULL;
+    model_array *point = anchor ? model_add(m, "bone.point", e) : NULL;
+    model_array *normal = point ? model_add(m, "bone.normal", e) : NULL;
+    model_array *depth = normal ? model_add(m, "bone.depth", e) : NULL;
+    model_array *of_area = depth ? model_add(m, "bone.area", e) : NULL;
+    for (int64_t i = 0; of_area && i < k->patches; i++) {
+        const patch *p = &k->patch[i];
+        const double length = sqrt(dot(p->normal, p->normal));
+        element->i32[i] = p->element;
+        anchor->i32[i] = p->anchor;
+        for (int a = 0; a < 3; a++) {
+            point->f64[3 * i + a] = p->point[a] / p->area;
+            normal->f32[3 * i + a] = (float)(p->normal[a] / length);
+        }
+        depth->f64[i] = p->depth / p->area;
+        of_area->f64[i] = p->area;
+        *area += p->area;
+    }
+    return of_area ? add_bodies(k, m, point->f64, e) : -1;
+}
+
+static int write_film(const maker *k, model *m, int64_t elements, err *e)
+{
+    int64_t count = 0;
+    for (int64_t i = 0; i < elements; i++)
+        count += k->part[(1 + CUT_MOMENTS) * i] > 0;
+    if (model_axis_add(m, "film", count, e))
+        return -1;
+    model_array *element = model_add(m, "film.element", e), *share = element ? model_add(m, "film.share", e) : NULL;
+    model_array *moments = share ? model_add(m, "film.moments", e) : NULL;
+    for (int64_t i = 0, at = 0; moments && i < elements; i++) {
+        const double *of = k->part + (1 + CUT_MOMENTS) * i;
+        if (!(of[0] > 0))
+            continue;
+        element->i32[at] = (int32_t)i;
+        share->f32[at] = (float)fmin(of[0] / k->voxel, 1);
+        for (int c = 0; c < CUT_MOMENTS; c++)
+            moments->f32[CUT_MOMENTS * at + c] = (float)fmax(-1, fmin(1, of[1 + c] / of[0]));
+        at++;
+    }
+    return moments ? 0 : -1;
+}
+
+void film_drop(model *m, notes *warnings)
+{
+    model_axis_drop(m, "bone", warnings);
+    model_axis_drop(m, "film", warnings);
+}
+
+static int make(maker *k, model *m, double *area, err *e)
+{
+    const int64_t elements = model_count(m, "element");
+    k->part = mem_array(elements, (1 + CUT_MOMENTS) * sizeof *k->part, "the films", e);
+    if (!k->part)
+        return -1;
+    for (int64_t i = 0; i < k->sides->triangles; i++) {
+        k->at = &k->sides->triangle[i];
+        if (add_sides(k))
+            return -1;
+    }
+    join(k);
+    return write_bone(k, m, area, e) || write_film(k, m, elements, e) ? -1 : 0;
+}
+
+int film_make(model *m, const rigid *r, double *area, notes *warnings, err *e)
+{
+    film_sides sides;
+    const int failed = film_sides_make(&sides, m, r, e);
+    maker k = {.sides = &sides, .e = e};
+    *area = 0;
+    film_drop(m, warnings);
+    if (!failed) {
+        const double *h = sides.grid.spacing;
+        k.voxel = h[0] * h[1] * h[2];
+    }
+    const int status = failed || make(&k, m, area, e) ? -1 : 0;
+    model_array *fixed = model_find(m, "node.rigid");
+    if (!status && fixed)
+        memset(fixed->u8, 0, (size_t)fixed->rows);
+    free(k.patch);
+    free(k.part);
+    film_sides_free(&sides);
+    return status;
+}
