@@ -205,7 +205,8 @@ int mesh_split(model *m, notes *warnings, err *e)
     model_axis_drop(m, "element", warnings);
     model_axis_drop(m, "bone", warnings);
     model_axis_drop(m, "film", warnings);
-    model_axis_drop(m, "cut", warnings); /* tetrahedra have the share alone */
+    model_axis_drop(m, "cut", warnings); /* tetrahedra have the share alone, and moduli between */
+    model_axis_drop(m, "border", warnings);
     if (model_axis_add(m, "element", s.cells * MESH_TETS, e))
         goto out;
     model_array *node = model_add_as(m, "element.node", MODEL_I32, "@node", "element", 4, e);
