@@ -102,7 +102,7 @@ static __device__ __forceinline__ void move_tip(const cuda_march &m, const cuda_
             v[a] = k.keep * v[a] + weight_of<CUTS>(speed.w) * gravity + k.push * from.w * net;
             u[a] += k.dt * v[a];
         } else if (k.what & PASS_BEGIN && x && x->hold[axis] >= 0) {
-            const float to = (float)now[p.row + 3 * x->hold[axis] + axis];
+            const float to = (float)moves_to(now + p.row, x->hold[axis], axis, x->rest);
             v[a] = (to - u[a]) / k.dt;
             u[a] = to;
         }
