@@ -110,12 +110,31 @@ static void say_rules(const tool *t, const muscles *list)
                     fibre_rules[list->of[i].rule].what);
 }
 
+static bool has_film(const model *m, int64_t which)
+{
+    const model_array *anchor = model_find(m, "bone.anchor");
+    for (int64_t i = 0; i < anchor->rows; i++)
+        if (anchor->i32[i] == which)
+            return true;
+    return false;
+}
+
+/* Whether what would hold nodes has no film. */
+static void check_films(const model *m, const rigid *r, notes *warnings)
+{
+    for (int64_t i = 0; i < r->surfaces; i++)
+        if (r->surface[i].idle < r->surface[i].primitives && !has_film(m, i))
+            notes_add(warnings, "%s holds nothing by --surface: it has no faces with tissue beside them",
+                      r->surface[i].name);
+}
+
 /* Films in place of rigid nodes, once all is known that these are for besides. */
 static int hold_surface(const tool *t, model *m, const rigid *r, notes *warnings, err *e)
 {
     double area = 0;
     if (film_make(m, r, &area, warnings, e))
         return -1;
+    check_films(m, r, warnings);
     tool_say(t, "bone holds the tissue by %lld films, of %.4g cm2", (long long)model_count(m, "bone"), 1e4 * area);
     return 0;
 }

@@ -32,18 +32,13 @@ typedef struct maker {
     err *e;
 } maker;
 
-/* A triangle that is to be moved by d along ways: its corners at x + d way. */
-typedef struct moving {
-    double x[3][3], way[3][3];
-} moving;
-
-static void moved_by(const moving *t, double d, double to[3][3])
+static void moved_by(const film_piece *t, double d, double to[3][3])
 {
     for (int i = 0; i < 9; i++)
         to[i / 3][i % 3] = t->x[i / 3][i % 3] + d * t->way[i / 3][i % 3];
 }
 
-static double area_at(const moving *t, double d, double normal[3])
+static double area_at(const film_piece *t, double d, double normal[3])
 {
     double x[3][3];
     moved_by(t, d, x);
@@ -108,7 +103,7 @@ static int take_layer(void *context, const voxel_piece *piece)
 
 /* Half a voxel, or less where there is no tissue twice as deep: of a sheet that is thinner than a voxel films are a
  * half. 0: there is none at all. */
-static double depth_of(const film_sides *s, const moving *t, const double normal[3])
+static double depth_of(const film_sides *s, const film_piece *t, const double normal[3])
 {
     double depth = film_voxel(s, normal) / 2, x[3];
     for (int tries = 0; tries < 4; tries++, depth /= 2) {
@@ -121,8 +116,9 @@ static double depth_of(const film_sides *s, const moving *t, const double normal
 }
 
 /* The films of a triangle that is small enough. */
-static int add_films(maker *k, const moving *t)
+static int add_films(void *context, const film_piece *t)
 {
+    maker *k = context;
     const lattice *l = &k->sides->grid;
     double x[3][3], n[3], from;
     area_at(t, 0, k->normal);
@@ -142,60 +138,21 @@ static int add_films(maker *k, const moving *t)
     return 0;
 }
 
-static double side_of(const moving *t, int i)
-{
-    double square = 0;
-    for (int a = 0; a < 3; a++)
-        square += pow(t->x[(i + 1) % 3][a] - t->x[i][a], 2);
-    return square;
-}
-
-/* Halves a triangle at its longest side, i. */
-static void halve(const moving *t, int i, moving *one, moving *other)
-{
-    const int j = (i + 1) % 3;
-    *one = *other = *t;
-    for (int a = 0; a < 3; a++) {
-        one->x[j][a] = other->x[i][a] = (t->x[i][a] + t->x[j][a]) / 2;
-        one->way[j][a] = other->way[i][a] = (t->way[i][a] + t->way[j][a]) / 2;
-    }
-}
-
-/* Triangles of which a side is longer than a voxel are halved, as the depth of films may change across them. */
-static int add_triangle(maker *k, const moving *t)
-{
-    const double *h = k->sides->grid.spacing, least = fmin(h[0], fmin(h[1], h[2]));
-    moving waiting[64] = {*t};
-    for (int count = 1; count > 0;) {
-        const moving one = waiting[--count];
-        int longest = 0;
-        for (int i = 1; i < 3; i++)
-            longest = side_of(&one, i) > side_of(&one, longest) ? i : longest;
-        if (side_of(&one, longest) > least * least && count + 2 <= 64) {
-            halve(&one, longest, &waiting[count], &waiting[count + 1]);
-            count += 2;
-        } else if (add_films(k, &one)) {
-            return -1;
-        }
-    }
-    return 0;
-}
-
 /* To one side, or to both. */
 static int add_sides(maker *k)
 {
     const film_triangle *of = k->at;
     for (int side = 1; side >= -1; side -= 2) {
-        moving t;
+        film_piece t;
         if (!(of->sides & (side > 0 ? FILM_ABOVE : FILM_BELOW)))
             continue;
         film_ways(k->sides, of, side, t.x, t.way);
         if (side < 0) { /* so that its normal turns too */
-            const moving turned = t;
+            const film_piece turned = t;
             memcpy(t.x[1], turned.x[2], sizeof t.x[1]), memcpy(t.x[2], turned.x[1], sizeof t.x[2]);
             memcpy(t.way[1], turned.way[2], sizeof t.way[1]), memcpy(t.way[2], turned.way[1], sizeof t.way[2]);
         }
-        if (add_triangle(k, &t))
+        if (film_pieces(k->sides, &t, add_films, k))
             return -1;
     }
     return 0;

@@ -100,28 +100,106 @@ int32_t film_element_near(const film_sides *s, const int64_t cell[3], const doub
     return best;
 }
 
+/* ---- pieces */
+
+static double side_of(const film_piece *t, int i)
+{
+    double square = 0;
+    for (int a = 0; a < 3; a++)
+        square += pow(t->x[(i + 1) % 3][a] - t->x[i][a], 2);
+    return square;
+}
+
+/* Halves a triangle at its longest side, i. */
+static void halve(const film_piece *t, int i, film_piece *one, film_piece *other)
+{
+    const int j = (i + 1) % 3;
+    *one = *other = *t;
+    for (int a = 0; a < 3; a++) {
+        one->x[j][a] = other->x[i][a] = (t->x[i][a] + t->x[j][a]) / 2;
+        one->way[j][a] = other->way[i][a] = (t->way[i][a] + t->way[j][a]) / 2;
+    }
+}
+
+/* Whether all elements are more than three voxels away: all that is looked at of a triangle is nearer to it. */
+static bool is_away(const film_sides *s, const film_piece *t)
+{
+    const double *h = s->grid.spacing, far = 3 * fmax(h[0], fmax(h[1], h[2]));
+    for (int a = 0; a < 3; a++) {
+        const double low = s->grid.origin[a] + h[a] * s->map.low[a], high = low + h[a] * s->map.size[a];
+        if (fmax(t->x[0][a], fmax(t->x[1][a], t->x[2][a])) < low - far ||
+            fmin(t->x[0][a], fmin(t->x[1][a], t->x[2][a])) > high + far)
+            return true;
+    }
+    return false;
+}
+
+int film_pieces(const film_sides *s, const film_piece *triangle, int (*take)(void *context, const film_piece *piece),
+                void *context)
+{
+    enum { MOST = 96 };
+    const double *h = s->grid.spacing, least = fmin(h[0], fmin(h[1], h[2]));
+    film_piece waiting[MOST] = {*triangle};
+    int status = 0;
+    for (int count = 1; count > 0 && !status;) {
+        const film_piece one = waiting[--count];
+        int longest = 0;
+        if (is_away(s, &one))
+            continue;
+        for (int i = 1; i < 3; i++)
+            longest = side_of(&one, i) > side_of(&one, longest) ? i : longest;
+        if (side_of(&one, longest) > least * least && count + 2 <= MOST) {
+            halve(&one, longest, &waiting[count], &waiting[count + 1]);
+            count += 2;
+        } else {
+            status = take(context, &one);
+        }
+    }
+    return status;
+}
+
 /* ---- sides */
 
-/* How much tissue is on one side of a triangle, 0 to 1: past the voxel that it is in, and past the next. */
-static double tissue_beside(const film_sides *s, const film_triangle *t, int side)
+/* How much tissue is on one side of a piece, 0 to 1: past the voxel that it is in, and past the next. n: its normal. */
+static double tissue_beside(const film_sides *s, const film_piece *t, const double n[3], int side)
 {
-    double n[3], x[3], sum = 0;
-    const double *at[3];
-    for (int i = 0; i < 3; i++)
-        at[i] = s->position + 3 * (int64_t)t->vertex[i];
-    film_normal(at[0], at[1], at[2], n);
+    double x[3], sum = 0;
     for (int i = 0; i < 2; i++) {
         for (int a = 0; a < 3; a++)
-            x[a] = (at[0][a] + at[1][a] + at[2][a]) / 3 + side * (i ? 1.25 : .75) * film_voxel(s, n) * n[a];
+            x[a] = (t->x[0][a] + t->x[1][a] + t->x[2][a]) / 3 + side * (i ? 1.25 : .75) * film_voxel(s, n) * n[a];
         sum += fmin(film_share_at(s, x), 1) / 2;
     }
     return sum;
 }
 
-/* Of each surface: the sum over its area of what its sides differ by, and of what both have. */
-typedef struct vote {
-    double more, all;
-} vote;
+/* Of a triangle or a surface, over the area that has tissue beside it: what is on either side, the more of both, and
+ * the area. */
+typedef struct tissue {
+    const film_sides *s;
+    double above, below, most, area;
+} tissue;
+
+static int add_tissue(void *context, const film_piece *t)
+{
+    tissue *to = context;
+    double n[3];
+    const double area = film_normal(t->x[0], t->x[1], t->x[2], n) / 2;
+    const double above = tissue_beside(to->s, t, n, 1), below = tissue_beside(to->s, t, n, -1);
+    to->above += area * above;
+    to->below += area * below;
+    to->most += area * fmax(above, below);
+    to->area += above > 0 || below > 0 ? area : 0;
+    return 0;
+}
+
+static void add_triangle(const film_sides *s, const film_triangle *t, tissue *to)
+{
+    film_piece whole = {.way = {{0}}};
+    for (int i = 0; i < 3; i++)
+        memcpy(whole.x[i], s->position + 3 * (int64_t)t->vertex[i], sizeof whole.x[i]);
+    to->s = s;
+    film_pieces(s, &whole, add_tissue, to); /* never fails */
+}
 
 static double area_of(const film_sides *s, const film_triangle *t)
 {
@@ -131,30 +209,28 @@ static double area_of(const film_sides *s, const film_triangle *t)
            2;
 }
 
-static void decide(const film_sides *s, film_triangle *t, const vote *of)
+/* of: the surface's. */
+static void decide(const film_sides *s, film_triangle *t, const tissue *of)
 {
-    const double above = tissue_beside(s, t, 1), below = tissue_beside(s, t, -1);
-    t->is_bounded = fabs(of->more) > .5 * of->all;
+    tissue own = {.area = 0};
+    t->is_bounded = fabs(of->above - of->below) > .5 * of->most;
     if (t->is_bounded) {
-        t->sides = of->more > 0 ? FILM_ABOVE : FILM_BELOW;
+        t->sides = of->above > of->below ? FILM_ABOVE : FILM_BELOW;
         return;
     }
-    t->sides = above > 0 && above > below - .5 ? FILM_ABOVE : 0;
-    if (below > 0 && below > above - .5)
+    add_triangle(s, t, &own);
+    t->sides = own.above > 0 && own.above > own.below - .5 * own.area ? FILM_ABOVE : 0;
+    if (own.below > 0 && own.below > own.above - .5 * own.area)
         t->sides |= FILM_BELOW;
 }
 
 static int find_sides(film_sides *s, const rigid *r, err *e)
 {
-    vote *of = mem_array(r->surfaces, sizeof *of, "the films", e);
+    tissue *of = mem_array(r->surfaces, sizeof *of, "the films", e);
     if (!of)
         return -1;
-    for (int64_t i = 0; i < s->triangles; i++) {
-        const film_triangle *t = &s->triangle[i];
-        const double area = area_of(s, t), above = tissue_beside(s, t, 1), below = tissue_beside(s, t, -1);
-        of[t->anchor].more += area * (above - below);
-        of[t->anchor].all += area * fmax(above, below);
-    }
+    for (int64_t i = 0; i < s->triangles; i++)
+        add_triangle(s, &s->triangle[i], &of[s->triangle[i].anchor]);
     for (int64_t i = 0; i < s->triangles; i++)
         decide(s, &s->triangle[i], &of[s->triangle[i].anchor]);
     free(of);

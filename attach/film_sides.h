@@ -16,6 +16,11 @@ typedef struct film_triangle {
     bool is_bounded; /* there is bone on its other side, as on that of all of its surface */
 } film_triangle;
 
+/* A triangle, and which way its corners move: to x + d way. */
+typedef struct film_piece {
+    double x[3][3], way[3][3];
+} film_piece;
+
 typedef struct film_sides {
     lattice grid;
     lattice_map map;
@@ -44,6 +49,12 @@ double film_share_at(const film_sides *s, const double place[3]);
  * of those about the cell, if it is so near as samples of the share may miss it, or the centre of a voxel. */
 int32_t film_element_in(const film_sides *s, const int64_t cell[3], const double place[3]);
 int32_t film_element_near(const film_sides *s, const int64_t cell[3], const double place[3]);
+
+/* Halves a triangle until no side of a piece is longer than the shortest of a voxel, as the tissue beside it may change,
+ * and calls take for each that is not away from all elements. Stops where that returns other than 0, which is then
+ * returned. */
+int film_pieces(const film_sides *s, const film_piece *triangle, int (*take)(void *context, const film_piece *piece),
+                void *context);
 
 /* The corners of a triangle, and which way they move to one of its sides (1 above, -1 below): as far along its normal
  * as all others that meet there. */

@@ -36,6 +36,15 @@ fails 1 "and without --surface they go" "no key" sinew info --get axis.bone "$T/
 attach -q --surface --text <"$T/voxels" >"$T/text"
 check "text and binary are twins" sinew diff "$T/held" "$T/text"
 
+# A plate of one face that is far larger than the tissue, whose middle is far from that; and a line, which holds nothing.
+printf 'g rigid\nv -9000 -9000 15.1\nv 9000 -9000 15.1\nv 9000 9000 15.1\nv -9000 9000 15.1\nf 1 2 3 4\n' >"$T/plate.obj"
+attach -q --surface --rigid-file "$T/plate.obj" <"$T/voxels" >"$T/plate"
+area=$(awk -v a="$(get bone.area.sum "$T/plate")" -v b="$(get bone.area.sum "$T/held")" 'BEGIN { printf "%.6g", a - b }')
+check "a face that is far larger than the tissue has films on both sides ($area m2)" awk -v a="$area" 'BEGIN { exit !(a > 2.7e-4 && a < 4e-4) }'
+printf 'g rigid\nv 12 1 1\nv 19 1 1\nl 1 2\n' >"$T/line.obj"
+attach -q --surface --rigid-file "$T/line.obj" <"$T/voxels" 2>"$T/said" >"$T/plate"
+check "a line holds nothing, which is told" grep -q "rigid holds nothing by --surface: it has no faces with tissue beside them" "$T/said"
+
 # ---- under pressure (Lame): cores of 11.3 mm in tubes and spheres of 20 mm
 
 # error SHAPE [ATTACH...]: of the displacement of nodes in the tissue of $T/voxels, in parts of it.
