@@ -72,12 +72,44 @@ static void add_films(model *m, const block *b)
     }
 }
 
-static void make(setting *s, const block *b, hourglass_control control)
+/* Makes laminates of mixed elements, on films and off. */
+static void add_borders(model *m)
+{
+    static const float way[3] = {.6F, .48F, .64F}, moments[6] = {.2F, .1F, .15F, .05F, .02F, .04F};
+    const int32_t *mix = model_find(m, "element.mix")->i32;
+    const float *mixture = model_find(m, "element.mixture")->f32;
+    int64_t count = 0;
+    err e = {0};
+    model_remove(m, "element.E"); /* laminates have the values of materials alone */
+    model_remove(m, "element.density");
+    int32_t *at_cell = block_array(m, "element.lattice")->i32;
+    for (int64_t i = 0; i < model_count(m, "element"); i++) {
+        at_cell[3 * i] = (int32_t)i % soft.cells[0];
+        at_cell[3 * i + 1] = (int32_t)i / soft.cells[0] % soft.cells[1];
+        at_cell[3 * i + 2] = (int32_t)i / soft.cells[0] / soft.cells[1];
+    }
+    for (int64_t i = 0; i < model_count(m, "element"); i++)
+        count += mix[i] >= 0 && mixture[i] > 0 && mixture[i] < 1;
+    if (model_axis_add(m, "border", count, &e))
+        die(e.text);
+    int32_t *element = block_array(m, "border.element")->i32;
+    float *n = block_array(m, "border.normal")->f32, *of = block_array(m, "border.moments")->f32;
+    for (int64_t i = 0, at = 0; at < count; i++)
+        if (mix[i] >= 0 && mixture[i] > 0 && mixture[i] < 1) {
+            element[at] = (int32_t)i;
+            memcpy(n + 3 * at, way, sizeof way);
+            memcpy(of + 6 * at++, moments, sizeof moments);
+        }
+}
+
+static void make(setting *s, const block *b, bool laminates, hourglass_control control)
 {
     err e = {0};
     *s = (setting){.p = {.nodes = 0}};
     block_make(b, &s->m);
     add_films(&s->m, b);
+    if (laminates)
+        add_borders(&s->m);
     if ((b->fibre[0] > 0 && script_add_contract(&s->s, &s->m, "m=.3", 0, &e)) ||
         tled_problem_make(&s->p, &s->m, &s->s, control, &e))
         die(e.text);
@@ -122,12 +154,13 @@ static double energy_of(const tled_problem *p, const double *u, const double *va
     return sum;
 }
 
-static void test_energy(hourglass_control control, bool mixed, const char *name)
+static void test_energy(hourglass_control control, bool mixed, bool laminates, const char *name)
 {
     block b = soft;
     setting s;
     b.mixed = mixed;
-    make(&s, &b, control);
+    b.fraction = laminates ? 0 : b.fraction;
+    make(&s, &b, laminates, control);
     double *u = numbers(3 * s.p.nodes), *f = numbers(3 * s.p.nodes), worst = 0, scale = 0;
     shake(&s, 4e-4, u);
     pull(&s, &tled_cpu_double, 1, u, f);
@@ -154,7 +187,7 @@ static void test_strain(void)
 {
     static const double a[3] = {.05, -.1, .08};
     setting s;
-    make(&s, &soft, PHYSICAL);
+    make(&s, &soft, false, PHYSICAL);
     double *u = numbers(3 * s.p.nodes), worst = 0;
     for (int64_t film = 0; film < films_count(&s.p); film++) {
         const films *f = s.p.films;
@@ -205,7 +238,7 @@ static double square_found(setting *s)
 static void test_step(double area)
 {
     setting s;
-    make(&s, &soft, PHYSICAL);
+    make(&s, &soft, false, PHYSICAL);
     double *of = model_find(&s.m, "bone.area")->f64;
     for (int64_t i = 0; i < films_count(&s.p); i++)
         of[i] *= area;
@@ -225,7 +258,7 @@ static void test_bytes(const tled_executor *by, const char *name)
 {
     static const char *const sets[] = {"plain", "AVX2", "AVX-512"};
     setting s;
-    make(&s, &soft, PHYSICAL);
+    make(&s, &soft, false, PHYSICAL);
     double *u = numbers(3 * s.p.nodes), *want = numbers(3 * s.p.nodes), *f = numbers(3 * s.p.nodes);
     shake(&s, 4e-4, u);
     pull(&s, by, 1, u, want);
@@ -258,7 +291,7 @@ static void test_choice(void)
     char says[300];
     setting s;
     err e = {0};
-    make(&s, &soft, PHYSICAL);
+    make(&s, &soft, false, PHYSICAL);
     const executor_need need = tled_need(&s.p);
     ok(!executor_choose(table, "cuda", &need, says, sizeof says, &e) &&
            !strcmp(e.text, "the CUDA back end has no films on bone (attach --surface); expected -d cpu or auto"),
@@ -269,8 +302,10 @@ static void test_choice(void)
 
 int main(void)
 {
-    test_energy(PHYSICAL, false, "a block on films");
-    test_energy(ISOTROPIC(.05), true, "a mixed one");
+    test_energy(PHYSICAL, false, false, "a block on films");
+    test_energy(ISOTROPIC(.05), true, false, "a mixed one");
+    test_energy(ISOTROPIC(.05), true, true, "with laminates, which films have a part of");
+    test_energy(PHYSICAL, true, true, "and with physical hourglass control");
     test_strain();
     test_step(1);
     test_step(5);

@@ -381,29 +381,29 @@ static __attribute__((noinline)) void cut_forces(const cpu_work *w, const rows_r
         plain_cut_forces(w, run, shape);
 }
 
-/* The borders of a run of laminates; bulk moduli are those of its volumes. */
-static inline element_laminate laminate_at(const cpu_work *w, const rows_run *run)
+/* The borders of a run of laminates; bulk moduli are those of its volumes. by: the share of the element that counts. */
+static inline element_laminate laminate_at(const cpu_work *w, const rows_run *run, real by)
 {
     real n[LAMINATE_NUMBERS];
     for (int k = 0; k < LAMINATE_NUMBERS; k++)
         n[k] = load(w->border, ((int64_t)run->border * LAMINATE_NUMBERS + k) * LANES);
     const real *c = n + LAMINATE_SECOND, *k = n + LAMINATE_KINK;
-    const element_laminate l = {{n[0], n[1], n[2]},
-                                {c[0], c[1], c[2], c[3], c[4], c[5]},
-                                load(w->mixture, run->cell),
-                                {k[0], k[1], k[2], k[3]},
-                                {REAL_ZERO + (real_one)w->p->volume[run->volume].law.bulk,
-                                 REAL_ZERO + (real_one)w->p->volume[run->mix].law.bulk}};
+    const element_laminate l = {
+        {n[0], n[1], n[2]},
+        {c[0], c[1], c[2], c[3], c[4], c[5]},
+        load(w->mixture, run->cell),
+        {k[0], k[1], k[2], k[3]},
+        {by * (real_one)w->p->volume[run->volume].law.bulk, by * (real_one)w->p->volume[run->mix].law.bulk}};
     return l;
 }
 
 static __attribute__((noinline)) void laminate_forces(const cpu_work *w, const rows_run *run, element_shape shape)
 {
     const int which = muscle_of(w, w->fibre, run->volume), which_second = muscle_of(w, w->mixfibre, run->mix);
-    const element_laminate l = laminate_at(w, run);
-    const real own = 1 - l.share, other = l.share; /* laminates are enclosed wholly */
-    const element_law law = law_of_cells(w, run->cell, REAL_ZERO + 1),
-                      first = law_of_kind(kind_of(w, run->volume), own),
+    const real by = w->fraction ? load(w->fraction, run->cell) : REAL_ZERO + 1; /* less than 1 where films take some */
+    const element_laminate l = laminate_at(w, run, by);
+    const real own = by * (1 - l.share), other = by * l.share;
+    const element_law law = law_of_cells(w, run->cell, by), first = law_of_kind(kind_of(w, run->volume), own),
                       second = law_of_kind(kind_of(w, run->mix), other);
     const element_field u = moved_by(w, run);
     element_fibre fibre = fibre_of(w, w->fibre, run, run->volume, own, which);

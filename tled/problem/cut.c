@@ -96,6 +96,10 @@ int border_borrow(tled_problem *p, const model *m, err *e)
                        "elements have values in place of their materials' and others are laminates "
                        "(border.element); expected one of these");
     p->border = of->count ? mem_array(of->count, LAMINATE_NUMBERS * sizeof *p->border, "the borders", e) : NULL;
+    for (int64_t i = 0; i < of->count; i++)
+        if (cut_moments_row(&p->cut, of->element[i]) >= 0)
+            return err_set(e, NULL, 0, "element %d is in cut.element and in border.element; expected it in one of them",
+                           (int)of->element[i]);
     for (int64_t i = 0; p->border && i < of->count; i++)
         borders_numbers(of, i, p->side, tled_mixture(p, of->element[i]), p->border + LAMINATE_NUMBERS * i);
     return of->count && !p->border ? -1 : 0;

@@ -18,7 +18,7 @@ typedef struct deformed {
     double hourglass; /* J */
     hourglass_modes modes;
     stability_stiffening stiffening; /* how hourglass control follows the law */
-    const double *border;            /* of a laminate (border.h), or NULL; then: */
+    const double *border;            /* of a laminate (cut.h), or NULL; then: */
     border_parts parts;              /* whose law, as `law` above, has no moduli but what it stiffens by */
     laminate_state laminate;
 } deformed;

@@ -229,6 +229,14 @@ static void moments_left(const float *whole, double share, const float *part, do
     }
 }
 
+/* The next row from k on of an element that is no laminate: of those what films leave has the share alone. */
+static int64_t next_cut(const tled_problem *p, const model_array *element, int64_t k)
+{
+    while (k < element->rows && tled_border(p, element->i32[k]))
+        k++;
+    return k;
+}
+
 /* Rows of elements that are cut, by the model or by films; those of both are in order. */
 static int join_cuts(films *f, tled_problem *p, const model_array *element, const float *share, const float *moments,
                      err *e)
@@ -240,7 +248,7 @@ static int join_cuts(films *f, tled_problem *p, const model_array *element, cons
     f->cut_moments = f->cut_element ? mem_array(room, CUT_MOMENTS * sizeof *f->cut_moments, "the films", e) : NULL;
     if (!f->cut_moments)
         return -1;
-    for (int64_t i = 0, k = 0; i < of.count || k < element->rows; count++) {
+    for (int64_t i = 0, k = next_cut(p, element, 0); i < of.count || k < element->rows; count++) {
         const int32_t cut = i < of.count ? of.element[i] : INT32_MAX;
         const int32_t film = k < element->rows ? element->i32[k] : INT32_MAX;
         const int32_t at = cut < film ? cut : film;
@@ -252,7 +260,7 @@ static int join_cuts(films *f, tled_problem *p, const model_array *element, cons
         else
             memcpy(to, whole, CUT_MOMENTS * sizeof *to);
         i += cut == at;
-        k += film == at;
+        k = film == at ? next_cut(p, element, k + 1) : k;
     }
     p->cut = (cut_moments){f->cut_element, f->cut_moments, count};
     return 0;

@@ -44,8 +44,8 @@ typedef struct films {
     double elements_square, square;         /* 1/s2: the largest of elements; of the model with films, at rest */
 } films;
 
-/* Takes shares and moments away from elements, where the model has films; then, where masses and laws are known, makes
- * the films. -1 with e filled. */
+/* Takes shares and moments away from elements, where the model has films; of laminates, which have to be known by now,
+ * shares alone. Then, where masses and laws are known, makes the films. -1 with e filled. */
 int films_share(tled_problem *p, const model *m, err *e);
 int films_make(tled_problem *p, const model *m, err *e);
 void films_free(films *f);

@@ -132,8 +132,12 @@ double step_element_at_rest(const tled_problem *p, int64_t element)
 {
     const element_tensor rest = {0};
     const float *moments = tled_cut(p, element);
+    const double *border = tled_border(p, element);
     const tled_law law = tled_law_of(p, element);
     const step_fibres fibres = step_fibres_of(p, element, NULL);
+    if (border)
+        return border_square_at_rest(p, element, border, &fibres, INFINITY) +
+               (p->curved ? square_of_muscles(p, element) : 0);
     double square = square_at_rest(p, element);
     if (fibres.sets.count)
         square = fmax(law.twists, step_range_of(p, &law, rest, &fibres).high);
