@@ -46,6 +46,7 @@ worst=$(awk '$1 == "array" { on = $2; k = 0; next } /^[^-+0-9]/ { on = "" }
         for (a = 1; a < 4; a++) { d += n[i, a] * at[e[i], a]; l += at[e[i], a] ^ 2 }
         c = (of[e[i]] == 1 ? 1 : -1) * d / sqrt(l); if (!i || c < least) least = c } print count, least }' "$T/m")
 is "$(echo "$worst" | awk '{ print ($1 > 150), ($2 > 0.96) }')" "1 1" "normals of a ball are along its radius, within 16 degrees (borders, least cosine: $worst)"
+is "$(msds-mesh <"$T/one" 2>"$T/said" | sinew info | grep -c 'element.node\|border')" 1 "tetrahedra have none"
 fails 2 "--mixed without --fraction" "--mixed is for --fraction" voxelise --unit mm -s 1 --mixed laminate "$T/bar.obj"
 fails 2 "--mixed of another kind" "--mixed 'middle'" voxelise --unit mm -s 1 --fraction 2 --mixed middle "$T/bar.obj"
 
