@@ -114,6 +114,7 @@ voxelise -q --unit mm -s 5 --origin 1,2,3.4 --fraction 8 --strain enclosed "$T/c
 quaternion=$(awk 'BEGIN { s = sin(.25); printf "%.17g,%.17g,%.17g,%.17g", s / 3, 2 * s / 3, 2 * s / 3, cos(.25) }')
 printf '0 move lid 0,0,0 0,0,0,1 about 1cm,1cm,2cm\n.1 move lid 1mm,2mm,-3mm %s about 1cm,1cm,2cm\n' "$quaternion" >"$T/script"
 tled-run -q --script "$T/script" -t 1 --log-every 5e-4 --log "$T/log" <"$T/lid" >"$T/out" 2>"$T/said" || diag_file "$T/said"
+# shellcheck disable=SC2016 # of awk
 check "turned and moved, the tissue follows without strain" awk -F '\t' 'END { exit !($6 < 1e-14 && $10 > 1e-4) }' "$T/log"
 near "$(awk -F '\t' 'END { printf "%.9g", 1 + $14 / $10 }' "$T/log")" 1 1e-3 "energies balance while bone moves"
 check "the pose is the script's" sh -c "sinew info --get body.pose.lid '$T/out' | awk -v q=$quaternion '{ split(q, a, \",\"); for (i = 1; i <= 4; i++) if ((\$(3 + i) - a[i]) ^ 2 > 1e-18) exit 1 }'"

@@ -165,10 +165,10 @@ fi
 
 # A run with a log and checkpoints: what it saved is whole, and it goes on from there to the same bytes and rows.
 goes_on() {
-    rows() { # but for the columns that go by the clock
+    same_log() { # but for the columns that go by the clock
         cut -f 1-18 "$T/here/log" | cmp -s - "$T/rows"
     }
-    if [ "$status" -eq 0 ] && may_fail && are new && rows && [ ! -e "$T/here/state" ]; then
+    if [ "$status" -eq 0 ] && may_fail && are new && same_log && [ ! -e "$T/here/state" ]; then
         right=$((right + 1))
         return
     fi
@@ -183,7 +183,7 @@ goes_on() {
     how=--checkpoint
     [ ! -e "$T/here/state" ] && [ ! -e "$T/here/state.1" ] || how=--restart
     tled-run "$how" state -q -d cpu --threads 2 -c a=0.5 -t 0.02 --every 0.005 --log log --checkpoint-every 0.005 -o out <"$input" >/dev/null 2>&1 &&
-        are new && rows && [ ! -e "$T/here/state" ]
+        are new && same_log && [ ! -e "$T/here/state" ]
 }
 name="tled-run with a log and checkpoints" input=$T/in/bound.sinew files=out bad=1
 [ "$SINEW_LONG" ] || calls='open:EMFILE write:EIO fsync:EDQUOT stat:EIO'

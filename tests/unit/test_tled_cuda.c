@@ -229,7 +229,7 @@ static void test_cuts_bytes(const tled_executor *cpu, const tled_executor *cuda,
     test_bytes(&middle, .2, false, 60, cpu, cuda, what);
     snprintf(what, sizeof what, "%s, mean strain, many bricks", name);
     if (cpu == &tled_cpu_double)
-        test_bytes(&large, .2, false, 20, cpu, cuda, what);
+        test_bytes(&large, .2, false, 30, cpu, cuda, what);
     in_slit = &slits[5];
     snprintf(what, sizeof what, "%s, mean strain, slits, a script", name);
     test_bytes(&scripted, 0, true, 1000, cpu, cuda, what);
