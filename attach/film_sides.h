@@ -50,9 +50,9 @@ double film_share_at(const film_sides *s, const double place[3]);
 int32_t film_element_in(const film_sides *s, const int64_t cell[3], const double place[3]);
 int32_t film_element_near(const film_sides *s, const int64_t cell[3], const double place[3]);
 
-/* Halves a triangle until no side of a piece is longer than the shortest of a voxel, as the tissue beside it may change,
- * and calls take for each that is not away from all elements. Stops where that returns other than 0, which is then
- * returned. */
+/* Halves a triangle until no side of a piece is longer than the shortest of a voxel, as the tissue beside it may
+ * change, and calls take for each that is not away from all elements. Stops where that returns other than 0, which is
+ * then returned. */
 int film_pieces(const film_sides *s, const film_piece *triangle, int (*take)(void *context, const film_piece *piece),
                 void *context);
 
