@@ -106,11 +106,12 @@ static int take_layer(void *context, const voxel_piece *piece)
 static double depth_of(const film_sides *s, const film_piece *t, const double normal[3])
 {
     double depth = film_voxel(s, normal) / 2, x[3];
-    for (int tries = 0; tries < 4; tries++, depth /= 2) {
+    for (int tries = 0; tries < 4; tries++) {
         for (int a = 0; a < 3; a++)
             x[a] = (t->x[0][a] + t->x[1][a] + t->x[2][a]) / 3 + 2 * depth * normal[a];
         if (film_share_at(s, x) > 0)
             return depth;
+        depth /= 2;
     }
     return 0;
 }

@@ -70,7 +70,7 @@ static void reach(const polygon *p, int axis, int64_t *low, int64_t *high)
 }
 
 /* Cuts along z, then y, then x. */
-static int cut(const lattice *l, const polygon *p, int axis, int64_t cell[3],
+static int cut(const lattice *l, const polygon *p, int axis, int64_t cell[3], // NOLINT(misc-no-recursion): 3 deep
                int (*take)(void *context, const voxel_piece *piece), void *context)
 {
     int64_t low, high;
