@@ -36,19 +36,20 @@ same_by_sets() {
     first=
     for set in plain AVX2 AVX-512; do
         for threads in $numbers; do
-            name="$what, $model, $set, $threads threads"
+            run="$what, $model, $set, $threads threads"
             SINEW_VECTORS=$set tled-run -q --text -d cpu --threads "$threads" "$@" <"$T/$model" >"$T/by" 2>"$T/said"
             if grep -q SINEW_VECTORS "$T/said"; then
-                skip 1 "$name: this processor cannot"
+                skip 1 "$run: this processor cannot"
                 continue
             fi
             mv "$T/by" "$T/same"
             sum=$(sed -n '/^frame/,$p' "$T/same" | cksum)
-            grep -q '^frame' "$T/same" || sum="$name has none"
-            is "$sum" "${first:=$sum}" "$name: the same bytes"
+            grep -q '^frame' "$T/same" || sum="$run has none"
+            is "$sum" "${first:=$sum}" "$run: the same bytes"
         done
     done
 }
+
 # refuse_bar NAME WANTED ARG...: tled-run of $T/bar ends with this status and says this.
 refuse_bar() {
     name=$1 wanted=$2
