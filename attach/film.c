@@ -144,7 +144,7 @@ static int add_sides(maker *k)
 {
     const film_triangle *of = k->at;
     for (int side = 1; side >= -1; side -= 2) {
-        film_piece t;
+        film_piece t = {.x = {{0}}};
         if (!(of->sides & (side > 0 ? FILM_ABOVE : FILM_BELOW)))
             continue;
         film_ways(k->sides, of, side, t.x, t.way);
