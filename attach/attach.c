@@ -119,7 +119,7 @@ static bool has_film(const model *m, int64_t which)
     return false;
 }
 
-/* Whether what would hold nodes has no film. */
+/* Warns of rigid surfaces that hold nodes but no film. */
 static void check_films(const model *m, const rigid *r, notes *warnings)
 {
     for (int64_t i = 0; i < r->surfaces; i++)

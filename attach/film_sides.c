@@ -121,7 +121,7 @@ static void halve(const film_piece *t, int i, film_piece *one, film_piece *other
     }
 }
 
-/* Whether all elements are more than three voxels away: all that is looked at of a triangle is nearer to it. */
+/* Whether a triangle is more than three voxels away from all elements: then it can have no film. */
 static bool is_away(const film_sides *s, const film_piece *t)
 {
     const double *h = s->grid.spacing, far = 3 * fmax(h[0], fmax(h[1], h[2]));

@@ -10,7 +10,7 @@ typedef struct polygon { /* in units of cells from the lattice's origin */
     int corners;
 } polygon;
 
-/* What of a polygon is not on the far side of the plane x_axis = at; sign 1: what is above stays; -1: what is below. */
+/* Clips a polygon by the plane x_axis = at. sign: 1 keeps the part above it, -1 the part below. */
 static polygon clipped(const polygon *p, int axis, double at, int sign)
 {
     polygon to = {.corners = 0};

@@ -38,7 +38,7 @@ typedef struct borders {
 /* -1 with e filled where a model has some that cannot be. */
 int borders_of(borders *to, const model *m, err *e);
 
-/* Which row is an element's; -1: none. */
+/* Finds the row of an element; -1: it has none. */
 int64_t borders_at(const borders *of, int64_t element);
 
 /* LAMINATE_NUMBERS of a row, of boxes of these sides (m); share: of the second volume. A plane across the normal that

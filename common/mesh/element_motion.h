@@ -38,7 +38,7 @@ int element_mesh_of(element_mesh *to, const model *m, err *e);
 /* u: nodes x 3, m. Not finite where a tetrahedron is flat. */
 element_motion element_motion_of(const element_mesh *m, int64_t element, const double *u);
 
-/* What the two parts of an element that is a laminate do (element_laminate.h). */
+/* The state of the two parts of a laminate element (element_laminate.h). */
 typedef struct laminate_motion {
     enum form form;
     double c[2][FORM_NUMBERS]; /* coefficients of the parts, by their shares */

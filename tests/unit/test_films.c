@@ -12,6 +12,7 @@
 
 #include "tap.h"
 #include "tled_block.h"
+#include "tled_choice.h"
 
 #include <string.h>
 
@@ -279,24 +280,12 @@ static void test_bytes(const tled_executor *by, const char *name)
     end(&s);
 }
 
-static const char *usable(void)
-{
-    return NULL;
-}
-
 static void test_choice(void)
 {
-    static const executor card = {"cuda", ~(uint32_t)EXECUTOR_FILMS, ~(uint32_t)0, usable};
-    const executor *const table[] = {&card, &tled_cpu_double.is, NULL};
-    char says[300];
     setting s;
-    err e = {0};
     make(&s, &soft, false, PHYSICAL);
-    const executor_need need = tled_need(&s.p);
-    ok(!executor_choose(table, "cuda", &need, says, sizeof says, &e) &&
-           !strcmp(e.text, "the CUDA back end has no films on bone (attach --surface); expected -d cpu or auto"),
-       "%s", e.text);
-    ok(executor_choose(table, "auto", &need, says, sizeof says, &e) == &tled_cpu_double.is, "%s", says);
+    test_choice_without(&s.p, EXECUTOR_FILMS, "films on bone (attach --surface)",
+                        "cpu (the one with films on bone (attach --surface))");
     end(&s);
 }
 

@@ -12,6 +12,7 @@
 #include "cut_part.h"
 #include "tap.h"
 #include "tled_block.h"
+#include "tled_choice.h"
 
 #include <string.h>
 
@@ -333,27 +334,12 @@ static void test_refused(void)
     end(&s);
 }
 
-static const char *usable(void)
-{
-    return NULL;
-}
-
-/* A card that has all but these elements: it is refused by name, and left out where the choice is free. */
 static void test_choice(void)
 {
-    static const executor card = {"cuda", ~(uint32_t)EXECUTOR_CUTS, ~(uint32_t)0, usable};
-    const executor *const table[] = {&card, &tled_cpu_double.is, NULL};
-    char says[300];
     setting s;
-    err e = {0};
     make(&s, &soft, true, PHYSICAL);
-    const executor_need need = tled_need(&s.p);
-    ok(!executor_choose(table, "cuda", &need, says, sizeof says, &e) &&
-           !strcmp(e.text, "the CUDA back end has no mean strain of cut elements; expected -d cpu or auto"),
-       "%s", e.text);
-    ok(executor_choose(table, "auto", &need, says, sizeof says, &e) == &tled_cpu_double.is &&
-           !strcmp(says, "cpu (cuda: no mean strain of cut elements)"),
-       "%s", says);
+    test_choice_without(&s.p, EXECUTOR_CUTS, "mean strain of cut elements",
+                        "cpu (cuda: no mean strain of cut elements)");
     end(&s);
 }
 
