@@ -77,18 +77,46 @@ ELEMENT_FUNCTION element_field element_cut_force_of(hourglass_kind kind, element
     return element_force_of(HOURGLASS_ISOTROPIC, p, held, shape); /* P has held->p by now */
 }
 
+/* What a part's forces begin with. */
+typedef struct element_cut_state {
+    element_tensor h;
+    hourglass_modes modes;
+} element_cut_state;
+
+/* The state of a part; control follows the law from here. */
+ELEMENT_FUNCTION element_cut_state element_cut_begin(form f, hourglass_kind kind, element_field u, element_shape shape,
+                                                     element_law *law, element_cut c)
+{
+    const element_modes x = element_modes_of(u.x), y = element_modes_of(u.y), z = element_modes_of(u.z);
+    const element_cut_state s = {element_cut_gradient(x, y, z, shape.slope, c), element_hourglass_modes(x, y, z)};
+    element_follow(f, kind, s.modes, s.h, shape, law);
+    return s;
+}
+
+/* The forces of P. */
+ELEMENT_FUNCTION element_field element_cut_end(hourglass_kind kind, element_tensor p, element_cut_state s,
+                                               element_shape shape, const real *hourglass, element_cut c)
+{
+    hourglass_force held = hourglass_of(kind, s.modes, s.h, shape, hourglass);
+    return element_cut_force_of(kind, p, &held, shape, c);
+}
+
 /* As element_force_fibred, of a part; what is linear in its volume is the law's and the fibres', as share is there. */
 ELEMENT_FUNCTION element_field element_force_cut(form f, hourglass_kind kind, element_field u, element_shape shape,
                                                  element_law law, element_fibre fibre, int which, element_fibre second,
                                                  int which_second, const fibre_set *sets, int count, element_cut c)
 {
-    const element_modes x = element_modes_of(u.x), y = element_modes_of(u.y), z = element_modes_of(u.z);
-    const element_tensor h = element_cut_gradient(x, y, z, shape.slope, c);
-    const hourglass_modes modes = element_hourglass_modes(x, y, z);
-    element_follow(f, kind, modes, h, shape, &law);
-    const element_tensor p = element_stress(f, h, law.c, fibre, which, second, which_second, sets, count);
-    hourglass_force held = hourglass_of(kind, modes, h, shape, law.hourglass);
-    return element_cut_force_of(kind, p, &held, shape, c);
+    const element_cut_state s = element_cut_begin(f, kind, u, shape, &law, c);
+    const element_tensor p = element_stress(f, s.h, law.c, fibre, which, second, which_second, sets, count);
+    return element_cut_end(kind, p, s, shape, law.hourglass, c);
+}
+
+/* As element_force_cut, of a law alone: without fibres that a compiler would fill and copy. */
+ELEMENT_FUNCTION element_field element_force_cut_plain(form f, hourglass_kind kind, element_field u,
+                                                       element_shape shape, element_law *law, element_cut c)
+{
+    const element_cut_state s = element_cut_begin(f, kind, u, shape, law, c);
+    return element_cut_end(kind, form_stress(f, s.h, law->c), s, shape, law->hourglass, c);
 }
 
 #ifdef REAL_IS_DOUBLE

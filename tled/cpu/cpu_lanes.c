@@ -161,30 +161,26 @@ static inline void add_field(const cpu_work *w, const rows_run *run, const eleme
     add_forces(w->sum[2], run, &f->z);
 }
 
-/* A volume's law, of what is tissue. */
-static inline element_law law_of_kind(const cpu_kind *kind, real share)
+/* A volume's law, of what is tissue: as much of it as the form reads. In place: returned, it would be copied. */
+static inline void law_of_kind(const cpu_kind *kind, real share, element_law *law)
 {
-    element_law law = {{REAL_ZERO}, {REAL_ZERO}};
     for (int i = 0; i < MODULI; i++)
-        law.c[i] = share * (real_one)kind->law[i];
+        law->c[i] = share * (real_one)kind->law[i];
     for (int i = MODULI; i < COEFFICIENTS; i++)
-        law.c[i] = real_of(kind->law[i]);
+        law->c[i] = real_of(kind->law[i]);
     for (int i = 0; i < HOURGLASS_NUMBERS; i++)
-        law.hourglass[i] = share * (real_one)kind->law[COEFFICIENTS + i];
-    return law;
+        law->hourglass[i] = share * (real_one)kind->law[COEFFICIENTS + i];
 }
 
 /* Likewise that of cells that are mixed. */
-static inline element_law law_of_cells(const cpu_work *w, int64_t cell, real share)
+static inline void law_of_cells(const cpu_work *w, int64_t cell, real share, element_law *law)
 {
-    element_law law = {{REAL_ZERO}, {REAL_ZERO}};
     for (int i = 0; i < MODULI; i++)
-        law.c[i] = share * load(w->law[i], cell);
+        law->c[i] = share * load(w->law[i], cell);
     for (int i = MODULI; i < COEFFICIENTS; i++)
-        law.c[i] = load(w->law[i], cell);
+        law->c[i] = load(w->law[i], cell);
     for (int i = 0; i < HOURGLASS_NUMBERS; i++)
-        law.hourglass[i] = share * load(w->law[COEFFICIENTS + i], cell);
-    return law;
+        law->hourglass[i] = share * load(w->law[COEFFICIENTS + i], cell);
 }
 
 static inline void run_forces(const cpu_work *w, const rows_run *run, element_shape shape, hourglass_kind control,
@@ -192,7 +188,8 @@ static inline void run_forces(const cpu_work *w, const rows_run *run, element_sh
 {
     const cpu_kind *kind = kind_of(w, run->volume);
     const real share = w->fraction ? load(w->fraction, run->cell) : REAL_ZERO + 1; /* forces are linear in all below */
-    const element_law law = law_of_kind(kind, share);
+    element_law law;
+    law_of_kind(kind, share, &law);
     const element_fibre fibre = fibre_of(w, w->fibre, run, run->volume, share, which);
     const element_field f = element_force(THE_FORM, control, moved_by(w, run), shape, law, fibre, which);
     add_field(w, run, &f);
@@ -204,7 +201,8 @@ static inline void mixed_forces(const cpu_work *w, const rows_run *run, element_
 {
     const real share = w->fraction ? load(w->fraction, run->cell) : REAL_ZERO + 1, part = load(w->mixture, run->cell);
     const real own = share * (1 - part), other = share * part;
-    const element_law law = law_of_cells(w, run->cell, share);
+    element_law law;
+    law_of_cells(w, run->cell, share, &law);
     const element_fibre fibre = fibre_of(w, w->fibre, run, run->volume, own, which);
     const element_fibre second = fibre_of(w, w->mixfibre, run, run->mix, other, which_second);
     const element_field f =
@@ -335,7 +333,11 @@ static inline void any_forces_of(const cpu_work *w, const rows_run *run, element
     const int which = muscle_of(w, w->fibre, run->volume), which_second = muscle_of(w, w->mixfibre, run->mix);
     const real share = w->fraction ? load(w->fraction, run->cell) : REAL_ZERO + 1;
     const real part = mixed ? load(w->mixture, run->cell) : REAL_ZERO, own = share * (1 - part), other = share * part;
-    const element_law law = mixed ? law_of_cells(w, run->cell, share) : law_of_kind(kind_of(w, run->volume), share);
+    element_law law;
+    if (mixed)
+        law_of_cells(w, run->cell, share, &law);
+    else
+        law_of_kind(kind_of(w, run->volume), share, &law);
     const element_field u = moved_by(w, run);
     element_fibre fibre = fibre_of(w, w->fibre, run, run->volume, own, which);
     element_fibre second = fibre_of(w, w->mixfibre, run, mixed ? run->mix : run->volume, other, which_second);
@@ -361,14 +363,13 @@ static __attribute__((noinline)) void fibred_forces(const cpu_work *w, const row
         any_forces_of(w, run, shape, HOURGLASS_ISOTROPIC, false);
 }
 
-/* Cut elements of a volume that has a law alone. */
-static inline void plain_cut_forces(const cpu_work *w, const rows_run *run, element_shape shape)
+/* Cut elements of a volume that has a law alone. control: a constant. */
+static inline void plain_cut_forces(const cpu_work *w, const rows_run *run, element_shape shape, hourglass_kind control)
 {
     const real share = load(w->fraction, run->cell);
-    const element_fibre none = {.tension = REAL_ZERO};
-    const element_field f = element_force_cut(THE_FORM, w->p->control.kind, moved_by(w, run), shape,
-                                              law_of_kind(kind_of(w, run->volume), share), none, ELEMENT_NO_MUSCLE,
-                                              none, ELEMENT_NO_MUSCLE, 0, 0, cut_of(w, run));
+    element_law law;
+    law_of_kind(kind_of(w, run->volume), share, &law);
+    const element_field f = element_force_cut_plain(THE_FORM, control, moved_by(w, run), shape, &law, cut_of(w, run));
     add_field(w, run, &f);
 }
 
@@ -377,8 +378,10 @@ static __attribute__((noinline)) void cut_forces(const cpu_work *w, const rows_r
     const bool fibred = w->p->fibres.of && fibres_any(&w->p->fibres, run->volume);
     if (fibred || run->mix >= 0 || muscle_of(w, w->fibre, run->volume) != ELEMENT_NO_MUSCLE)
         any_forces_of(w, run, shape, w->p->control.kind, true);
+    else if (w->p->control.kind == HOURGLASS_PHYSICAL)
+        plain_cut_forces(w, run, shape, HOURGLASS_PHYSICAL);
     else
-        plain_cut_forces(w, run, shape);
+        plain_cut_forces(w, run, shape, HOURGLASS_ISOTROPIC);
 }
 
 /* The borders of a run of laminates; bulk moduli are those of its volumes. by: the share of the element that counts. */
@@ -403,8 +406,10 @@ static __attribute__((noinline)) void laminate_forces(const cpu_work *w, const r
     const real by = w->fraction ? load(w->fraction, run->cell) : REAL_ZERO + 1; /* less than 1 where films take some */
     const element_laminate l = laminate_at(w, run, by);
     const real own = by * (1 - l.share), other = by * l.share;
-    const element_law law = law_of_cells(w, run->cell, by), first = law_of_kind(kind_of(w, run->volume), own),
-                      second = law_of_kind(kind_of(w, run->mix), other);
+    element_law law, first, second;
+    law_of_cells(w, run->cell, by, &law);
+    law_of_kind(kind_of(w, run->volume), own, &first);
+    law_of_kind(kind_of(w, run->mix), other, &second);
     const element_field u = moved_by(w, run);
     element_fibre fibre = fibre_of(w, w->fibre, run, run->volume, own, which);
     element_fibre along = fibre_of(w, w->mixfibre, run, run->mix, other, which_second);
