@@ -252,11 +252,11 @@ static int join_cuts(films *f, tled_problem *p, const model_array *element, cons
         const int32_t cut = i < of.count ? of.element[i] : INT32_MAX;
         const int32_t film = k < element->rows ? element->i32[k] : INT32_MAX;
         const int32_t at = cut < film ? cut : film;
-        const float *whole = cut == at ? of.of + CUT_MOMENTS * i : NULL;
+        const float *whole = of.of + CUT_MOMENTS * i;
         float *to = f->cut_moments + CUT_MOMENTS * count;
         f->cut_element[count] = at;
         if (film == at)
-            moments_left(whole, films_whole(p, at), moments + CUT_MOMENTS * k, (double)share[k], to);
+            moments_left(cut == at ? whole : NULL, films_whole(p, at), moments + CUT_MOMENTS * k, (double)share[k], to);
         else
             memcpy(to, whole, CUT_MOMENTS * sizeof *to);
         i += cut == at;
