@@ -18,11 +18,13 @@
 #define VECTORS_SET_avx2(X)  X(avx2, "AVX2", 32, __builtin_cpu_supports("avx2"))
 #define VECTORS_SET_plain(X) X(plain, "plain", 16, true)
 
-/* Those that are compiled for this machine, the fastest first. */
-#ifdef __x86_64__
-#define VECTORS_SETS(X) VECTORS_SET_avx512(X) VECTORS_SET_avx2(X) VECTORS_SET_plain(X)
-#else
+/* Those that are compiled for this machine, the fastest first; the Makefile's SETS. */
+#ifndef __x86_64__
 #define VECTORS_SETS(X) VECTORS_SET_plain(X)
+#elif defined VECTORS_WITHOUT_AVX512
+#define VECTORS_SETS(X) VECTORS_SET_avx2(X) VECTORS_SET_plain(X)
+#else
+#define VECTORS_SETS(X) VECTORS_SET_avx512(X) VECTORS_SET_avx2(X) VECTORS_SET_plain(X)
 #endif
 
 /* A table of a solver has a row for each set, in this order. */
