@@ -13,7 +13,8 @@
  * As dW/da = 0, forces are those of F_1, F_2 and m - a kappa with a kept: no derivative of a is in them. In series
  * across and side by side along: a laminate's own moduli, whatever the two laws are.
  *
- * a is found by LAMINATE_TURNS of Newton's, from 0 on, by the matrix
+ * a is found by at most LAMINATE_TURNS of Newton's, from 0 on, until the next would change it by less than
+ * LAMINATE_ENOUGH of it, by the matrix
  *     s (1 - s) V ((1 - s) A_2 + s A_1) + hourglass,   A_il = d2W/dF_ij dF_lm N_j N_m,
  * where A is that of a law of I1bar and J which has the law's bulk modulus and its stiffness in shear (form_shear.h):
  * exact of neo-Hookean laws and of those in form FIRST. With x = I1bar - 3, T = f'(x), g = cof F N, v = F N:
@@ -27,6 +28,11 @@
 #include "physics/laminate_numbers.h"
 
 enum { LAMINATE_TURNS = 5 };
+#ifdef ELEMENT_SINGLE
+#define LAMINATE_ENOUGH 3e-6
+#else
+#define LAMINATE_ENOUGH 1e-11
+#endif
 
 /* kappa: of modes xy, yz, zx and xyz, m. */
 typedef struct laminate_kink {
@@ -143,6 +149,14 @@ ELEMENT_FUNCTION element_vector laminate_solved(element_symmetric q, element_vec
     return d;
 }
 
+/* Where the next turn is to be taken: each element by itself, whichever are computed beside it. */
+ELEMENT_FUNCTION real_mask laminate_goes_on(element_vector jump, element_vector left)
+{
+    const real a = jump.x * jump.x + jump.y * jump.y + jump.z * jump.z;
+    const real d = left.x * left.x + left.y * left.y + left.z * left.z;
+    return d > R(LAMINATE_ENOUGH * LAMINATE_ENOUGH) * a;
+}
+
 /* hourglass: what holds the modes, as it is at the mean F. first, second: the parts' coefficients, by their shares. */
 ELEMENT_FUNCTION laminate_state laminate_of(form f, hourglass_kind kind, element_modes x, element_modes y,
                                             element_modes z, element_shape shape, const real *hourglass,
@@ -169,9 +183,12 @@ ELEMENT_FUNCTION laminate_state laminate_of(form f, hourglass_kind kind, element
             laminate_add(held, f, to.h1, first, (1 - share) * l->bulk[0], l->normal, other * share);
         to.left =
             laminate_solved(laminate_add(q, f, to.h2, second, share * l->bulk[1], l->normal, one * (1 - share)), r);
-        if (turn == LAMINATE_TURNS)
+        const real_mask on = laminate_goes_on(to.jump, to.left);
+        if (turn == LAMINATE_TURNS || !real_any(on))
             break;
-        to.jump = (element_vector){to.jump.x - to.left.x, to.jump.y - to.left.y, to.jump.z - to.left.z};
+        to.jump = (element_vector){REAL_SELECT(on, to.jump.x - to.left.x, to.jump.x),
+                                   REAL_SELECT(on, to.jump.y - to.left.y, to.jump.y),
+                                   REAL_SELECT(on, to.jump.z - to.left.z, to.jump.z)};
     }
     return to;
 }
