@@ -2,7 +2,7 @@
 
 #include "inspect/info_stats.h"
 #include "mesh/element_place.h"
-#include "mesh/energy.h"
+#include "results/energy.h"
 
 #include <inttypes.h>
 #include <string.h>

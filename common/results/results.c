@@ -3,6 +3,7 @@
 #include "base/mem.h"
 #include "base/near.h"
 #include "cli/spelling.h"
+#include "mesh/bone_films.h"
 #include "mesh/element_fibres.h"
 #include "mesh/element_motion.h"
 #include "mesh/fibre_sets.h"
@@ -32,16 +33,20 @@ struct results {
     material *of_volume; /* owned */
     materials_map map;
     element_fibres muscles;
-    fibres_view fibres;               /* owned */
+    fibres_view fibres; /* owned, as is what follows */
+    bone_films films;
+    film_rest rest;                   /* what films leave of elements */
+    film_bone *own;                   /* films: how their bone has moved in a frame */
     const int32_t *volume, *material; /* elements, volumes */
     int64_t materials;
     const float *fraction;     /* elements; NULL: 1 */
     hourglass_control control; /* of the run, for laminates */
-    double *part;              /* chunks x materials, J: owned */
+    double *part;              /* chunks of elements, then of films, x materials, J: owned */
     /* Of the frame that is looked at: */
     const double *u, *activation; /* nodes x 3, m; volumes, NULL: nothing contracts */
-    float *to[RESULTS];           /* of elements; NULL: not wanted */
-    bool sums;                    /* part is wanted */
+    const film_bone *bone;
+    float *to[RESULTS]; /* of elements; NULL: not wanted */
+    bool sums;          /* part is wanted */
 };
 
 /* ---- names */
@@ -111,17 +116,24 @@ typedef struct held {
     laminate_motion parts;
 } held;
 
-static held held_of(const results *r, int64_t i)
+/* What is the element's and its films'. */
+static held held_at(const results *r, int64_t i, element_tensor h, double volume)
 {
-    const element_motion is = element_motion_of(&r->mesh, i, r->u);
     const material_numbers own = materials_of_element(&r->map, i);
-    held to = {.h = is.h,
-               .volume = is.volume * (r->fraction ? (double)r->fraction[i] : 1),
+    held to = {.h = h,
+               .volume = volume,
                .form = own.form,
                .fibre = element_fibres_first(&r->muscles, i, r->activation),
                .second = element_fibres_second(&r->muscles, i, r->activation),
                .sets = fibre_sets_at(&r->fibres, i)};
     memcpy(to.c, own.c, sizeof to.c);
+    return to;
+}
+
+static held held_of(const results *r, int64_t i)
+{
+    const element_motion is = element_motion_of(&r->mesh, i, r->u);
+    held to = held_at(r, i, is.h, is.volume * (r->fraction ? (double)r->fraction[i] : 1));
     to.is_laminate = laminates_at(&r->mesh, &r->map, r->control, i, &is, &to.parts);
     return to;
 }
@@ -261,21 +273,49 @@ static void work(void *context, int64_t chunk, int64_t from, int64_t to)
     }
 }
 
+static int64_t chunks_of_elements(const results *r)
+{
+    return pool_chunks(r->mesh.elements, CHUNK);
+}
+
+static element_tensor tensor_of(const double h[9])
+{
+    return (element_tensor){h[0], h[1], h[2], h[3], h[4], h[5], h[6], h[7], h[8]};
+}
+
+static void film_work(void *context, int64_t chunk, int64_t from, int64_t to)
+{
+    const results *r = context;
+    double *sum = r->part + (chunks_of_elements(r) + chunk) * r->materials;
+    memset(sum, 0, (size_t)r->materials * sizeof *sum);
+    for (int64_t i = from; i < to; i++) {
+        const int64_t element = r->films.element[i];
+        double h[9];
+        bone_films_gradient(&r->films, i, &r->bone[i], r->u, r->mesh.node + 8 * element, h);
+        const held of = held_at(r, element, tensor_of(h), r->films.area[i] * r->films.depth[i]);
+        add_energy(r, element, &of, sum);
+    }
+}
+
 static void look(results *r, double *energies)
 {
+    const int64_t chunks = chunks_of_elements(r) + pool_chunks(r->films.count, CHUNK);
     r->sums = energies != NULL;
     pool_run(r->threads, r->mesh.elements, CHUNK, work, r);
+    if (r->sums && r->films.count)
+        pool_run(r->threads, r->films.count, CHUNK, film_work, r);
     for (int64_t i = 0; energies && i < r->materials; i++) {
         energies[i] = 0;
-        for (int64_t c = 0; c < pool_chunks(r->mesh.elements, CHUNK); c++)
+        for (int64_t c = 0; c < chunks; c++)
             energies[i] += r->part[c * r->materials + i];
     }
     memset(r->to, 0, sizeof r->to);
 }
 
-void results_energies(results *r, const double *u, double *to)
+void results_energies(results *r, const double *u, const film_bone *bone, double *to)
 {
     r->u = u;
+    r->bone = bone;
     r->activation = NULL;
     r->muscles.contractile = r->muscles.mixcontractile = NULL;
     look(r, to);
@@ -294,6 +334,8 @@ static void take_frame(results *r, const frame *f)
     r->muscles.contractile = doubles_of(f, "element.contractile");
     r->muscles.mixcontractile = doubles_of(f, "element.mixcontractile");
     r->activation = activation ? activation->f64 : NULL;
+    bone_films_moved(&r->films, f, r->own);
+    r->bone = r->own;
 }
 
 void results_of_elements(results *r, int row, const frame *f, float *to)
@@ -342,12 +384,6 @@ int results_add(results *r, frame *f, const double *activation, err *e)
 
 /* ---- of a model */
 
-static const float *floats_of(const model *m, const char *name)
-{
-    const model_array *a = model_find(m, name);
-    return a ? a->f32 : NULL;
-}
-
 /* How hourglass modes were held, which the model says where tled-run moved it. */
 static int take_control(results *r, err *e)
 {
@@ -357,20 +393,36 @@ static int take_control(results *r, err *e)
     return 0;
 }
 
+/* What films leave of elements counts as these. */
+static int take_films(results *r, err *e)
+{
+    const model_array *whole = model_find(r->m, "element.fraction");
+    r->fraction = whole ? whole->f32 : NULL;
+    if (bone_films_make(&r->films, &r->mesh, r->m, e))
+        return -1;
+    if (!r->films.count)
+        return 0;
+    r->own = mem_array(r->films.count, sizeof *r->own, "the results", e);
+    if (!r->own || film_rest_make(&r->rest, r->m, r->mesh.elements, r->fraction, &r->mesh.borders, &r->mesh.cut, e))
+        return -1;
+    r->fraction = r->rest.fraction;
+    return 0;
+}
+
 static int open_model(results *r, err *e)
 {
     const model *m = r->m;
     const model_array *volume = model_need(m, "element.volume", e);
     if (!volume || element_mesh_of(&r->mesh, m, e) || !(r->of_volume = materials_of_volumes(m, e)) ||
-        fibres_make(&r->fibres, m, r->of_volume, e) || take_control(r, e))
+        fibres_make(&r->fibres, m, r->of_volume, e) || take_control(r, e) || take_films(r, e))
         return -1;
     r->map = materials_map_of(m, r->of_volume);
     r->volume = volume->i32;
     r->material = model_find(m, "volume.material")->i32;
     r->materials = model_count(m, "material");
-    r->fraction = floats_of(m, "element.fraction");
     r->muscles = element_fibres_of(m, &r->map);
-    r->part = mem_array(pool_chunks(r->mesh.elements, CHUNK) * r->materials, sizeof *r->part, "the results", e);
+    const int64_t chunks = chunks_of_elements(r) + pool_chunks(r->films.count, CHUNK);
+    r->part = mem_array(chunks * r->materials, sizeof *r->part, "the results", e);
     return r->part ? 0 : -1;
 }
 
@@ -394,6 +446,9 @@ void results_destroy(results *r)
     if (!r)
         return;
     fibres_free(&r->fibres);
+    bone_films_free(&r->films);
+    film_rest_free(&r->rest);
+    free(r->own);
     free(r->of_volume);
     free(r->part);
     free(r);

@@ -1,7 +1,8 @@
 /* What the elements of a model hold in a frame: stress, strain, stretches and energies, from the displacements of the
  * nodes, the materials, and what muscles were activated to. In double whatever executor ran, once an element, at its
- * centre; so the arrays of a frame are the same, whether tled-run adds them or `sinew results` does later. The creator
- * owns a results; it borrows from the model and the threads.
+ * centre, or its mean over what is enclosed of it and no film's; energies by material have the films' too. So the
+ * arrays of a frame are the same, whether tled-run adds them or `sinew results` does later. The creator owns a results;
+ * it borrows from the model and the threads.
  */
 #ifndef SINEW_RESULTS_H
 #define SINEW_RESULTS_H
@@ -52,7 +53,9 @@ int results_add(results *r, frame *f, const double *activation, err *e);
 /* One of them alone: elements x its columns, to be filled. */
 void results_of_elements(results *r, int row, const frame *f, float *to);
 
-/* Strain energy by material, J; u: nodes x 3, m. */
-void results_energies(results *r, const double *u, double *to);
+struct film_bone;
+
+/* Strain energy by material, J; u: nodes x 3, m; bone: how that of each film has moved; NULL where there is none. */
+void results_energies(results *r, const double *u, const struct film_bone *bone, double *to);
 
 #endif

@@ -141,6 +141,31 @@ near "$(get node.displacement.at.5mm,5mm,5mm "$T/out" | awk '{ print $3 }')" .00
 
 tled-run -q -g 1,2,-9.81 --ramp .01 -t .05 --log-every 1e-4 --log "$T/log" <"$T/lid" >"$T/one" 2>"$T/said" || diag_file "$T/said"
 near "$(awk -F '\t' 'END { printf "%.9g", 1 + $14 / $8 }' "$T/log")" 1 1e-3 "energies balance under gravity"
+# known NAME [TLED-RUN...]: what the model in $T/lid has of energy is the log's, by materials, in frames and in what is made of them later.
+known() {
+    known_name=$1
+    shift
+    tled-run -q "$@" -t .02 --log-every .01 --log "$T/log" --tsv material.energy --results material.energy <"$T/lid" >"$T/out" 2>"$T/said" || diag_file "$T/said"
+    awk -F '\t' 'NR == 1 { for (i = 1; i <= NF; i++) column[$i] = i; next } { sum = 0; for (k in column) if (k ~ /^material.energy/) sum += $column[k] } END { printf "%.9g %.9g %.9g\n", $column["strain/J"], sum, $column["quality.hourglass"] }' "$T/log" >"$T/row"
+    read -r strain sum modes <"$T/row"
+    near "$sum" "$strain" 1e-8 "$known_name: the strain energy is that of materials"
+    near "$(get material.energy.sum "$T/out")" "$strain" 1e-8 "and that of frames"
+    is "$(sinew results material.energy <"$T/out" | sinew info --get material.energy.sum)" "$(get material.energy.sum "$T/out")" "also where it is asked for later"
+    near "$(get quality.hourglass "$T/out")" "$modes" 1e-7 "hourglass energy is the same share of it"
+}
+cp "$T/lid" "$T/one"
+printf '0 move lid 0,0,0 0,0,0,1 about 1cm,1cm,2cm\n.02 move lid 1mm,2mm,-3mm %s about 1cm,1cm,2cm\n' "$quaternion" >"$T/script"
+printf '0 displace skull_low 0,0,0\n.02 displace skull_low 1mm,0,0\n' >>"$T/script"
+voxelise -q --unit mm -s 5 --origin 1,2,3.4 --fraction 8 "$T/cube.obj" | attach -q --surface --part lid=skull_top >"$T/lid"
+known "bone that turns and slides" --script "$T/script"
+check "frames say how bone has moved" test "$(get bone.displacement.max "$T/out")" != 0
+awk -f samples/shape.awk -f samples/head.awk >"$T/head.obj"
+for mixed in between laminate; do
+    voxelise -q --unit mm -s 8 --fraction 4 --mixed "$mixed" --materials samples/head.materials "$T/head.obj" | attach -q --surface >"$T/lid"
+    known "a head with muscles, mixed elements $mixed" -c zyg_left=.3 -g 0,0,-9.81
+done
+check "without bone that moves they say nothing" sh -c "! sinew info '$T/out' | grep -q bone.displacement"
+mv "$T/one" "$T/lid"
 for sets in plain AVX2; do
     for precision in double single; do
         SINEW_VECTORS=$sets tled-run -q --precision "$precision" --threads 1 -g 1,2,-9.81 -t .02 <"$T/lid" >"$T/a" 2>"$T/said" || { skip 1 "no $sets" && continue; }
@@ -159,6 +184,8 @@ spoilt() {
 }
 spoilt bone.depth 3 0
 fails 1 "a film without thickness" "bone.depth and bone.area, row 3, are 0 and .*; expected both above 0" sh -c "tled-run -n 1 <'$T/spoilt'"
+spoilt bone.depth 3 1e-300
+fails 1 "or next to none" "bone.depth, row 3, is 1e-300 m; expected at least a millionth of a voxel, 5e-09 m" sh -c "tled-run -n 1 <'$T/spoilt'"
 spoilt bone.normal 2 "0 0 0"
 fails 1 "without a normal" "bone.normal, row 2, is 0 0 0; expected a unit normal" sh -c "tled-run -n 1 <'$T/spoilt'"
 spoilt bone.point 1 "1 1 1"

@@ -192,18 +192,18 @@ static void test_strain(void)
     double *u = numbers(3 * s.p.nodes), worst = 0;
     for (int64_t film = 0; film < films_count(&s.p); film++) {
         const films *f = s.p.films;
-        const int32_t *node = s.p.element_node + 8 * (int64_t)f->element[film];
+        const int32_t *node = s.p.element_node + 8 * (int64_t)f->rows.element[film];
         for (int64_t n = 0; n < s.p.nodes; n++) { /* 0 where the film meets the bone */
-            double away = f->depth[film];
+            double away = f->rows.depth[film];
             for (int k = 0; k < 3; k++)
-                away += (s.p.position[3 * n + k] - f->point[3 * film + k]) * f->normal[3 * film + k];
+                away += (s.p.position[3 * n + k] - f->rows.point[3 * film + k]) * f->rows.normal[3 * film + k];
             for (int k = 0; k < 3; k++)
                 u[3 * n + k] = a[k] * away;
         }
         const element_tensor h = films_gradient(&s.p, film, u, node, NULL);
         const double got[9] = {h.xx, h.xy, h.xz, h.yx, h.yy, h.yz, h.zx, h.zy, h.zz};
         for (int i = 0; i < 9; i++)
-            worst = fmax(worst, fabs(got[i] - a[i / 3] * f->normal[3 * film + i % 3]));
+            worst = fmax(worst, fabs(got[i] - a[i / 3] * f->rows.normal[3 * film + i % 3]));
     }
     near_(worst, 0, 1e-12, "a film has the gradient of tissue that is held at the bone's surface");
     free(u);

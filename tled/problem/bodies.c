@@ -178,11 +178,11 @@ static void points_free(film_points *of)
 
 static void points_of(film_points *to, const tled_problem *p, int32_t body, const double *value)
 {
-    double turn[3][3];
     to->count = 0;
     for (int64_t i = 0; i < films_count(p); i++)
-        if (p->films->body && p->films->body[i] == body) {
-            films_bone(p, i, value, to->displacement + 3 * i, turn);
+        if (p->films->rows.body && p->films->rows.body[i] == body) {
+            const film_bone bone = films_bone(p, i, value);
+            memcpy(to->displacement + 3 * i, bone.u, sizeof bone.u);
             to->film[to->count++] = (int32_t)i;
         }
 }
@@ -193,7 +193,7 @@ static void place_points(const film_points *of, const tled_problem *p, double mi
         middle[a] = 0;
         for (int64_t i = 0; i < of->count; i++)
             middle[a] +=
-                (p->films->point[3 * (int64_t)of->film[i] + a] + of->displacement[3 * (int64_t)of->film[i] + a]) /
+                (p->films->rows.point[3 * (int64_t)of->film[i] + a] + of->displacement[3 * (int64_t)of->film[i] + a]) /
                 (double)of->count;
     }
 }
@@ -214,12 +214,13 @@ static void add_film(const tled_problem *p, const bodies_state *now, int64_t fil
                      body_load *to)
 {
     const films *f = p->films;
-    const int32_t *node = p->element_node + 8 * (int64_t)f->element[film];
+    const int32_t *node = p->element_node + 8 * (int64_t)f->rows.element[film];
     const element_tensor h = films_gradient(p, film, now->displacement, node, now->value);
     const element_tensor s = films_stress(p, film, h, now->value);
-    const double mass = tled_law_of(p, f->element[film]).density * f->area[film] * f->depth[film] * f->taken;
-    double force[3], x[3], bone[3], turn[3][3];
-    films_bone(p, film, now->value, bone, turn);
+    const double mass =
+        tled_law_of(p, f->rows.element[film]).density * f->rows.area[film] * f->rows.depth[film] * f->taken;
+    const film_bone bone = films_bone(p, film, now->value);
+    double force[3], x[3];
     for (int c = 0; c < 8; c++) {
         films_pull(f, film, c, &s, force);
         for (int a = 0; a < 3; a++)
@@ -228,7 +229,7 @@ static void add_film(const tled_problem *p, const bodies_state *now, int64_t fil
     }
     for (int a = 0; a < 3; a++) {
         force[a] = p->gravity < 0 ? 0 : mass * now->value[3 * p->gravity + a];
-        x[a] = f->point[3 * film + a] + bone[a];
+        x[a] = f->rows.point[3 * film + a] + bone.u[a];
     }
     add_force(to, x, middle, force);
 }
@@ -254,7 +255,7 @@ static int film_poses(const tled_problem *p, const bodies_state *now, double *to
     const int failed = points_make(&of, p, e);
     for (int32_t i = 0; !failed && i < p->bodies->count; i++) {
         points_of(&of, p, i, now->value);
-        const pose at = pose_fit(p->films->point, of.displacement, of.film, of.count);
+        const pose at = pose_fit(p->films->rows.point, of.displacement, of.film, of.count);
         pose_to_row(&at, to + 7 * (int64_t)i);
     }
     points_free(&of);

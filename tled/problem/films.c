@@ -1,8 +1,8 @@
 #include "tled/problem/films.h"
 
 #include "base/mem.h"
+#include "mesh/element_motion.h"
 #include "mesh/fibre_sets.h"
-#include "mesh/lattice.h"
 #include "physics/stability.h"
 #include "tled/problem/cut.h"
 #include "tled/problem/film_strain.h"
@@ -20,110 +20,23 @@ void films_free(films *f)
 {
     if (!f)
         return;
-    free(f->normal);
-    free(f->slope);
+    bone_films_free(&f->rows);
+    film_rest_free(&f->rest);
     free(f->fibred);
     free(f->node);
     free(f->place);
     free(f->pull_start);
     free(f->pull);
-    free(f->fraction);
-    free(f->cut_element);
-    free(f->cut_moments);
     free(f->borne);
     free(f);
 }
 
 /* ---- making */
 
-static int borrow(films *f, const model *m, err *e)
-{
-    const model_array *element = model_need(m, "bone.element", e), *anchor = model_need(m, "bone.anchor", e);
-    const model_array *point = model_need(m, "bone.point", e), *depth = model_need(m, "bone.depth", e);
-    const model_array *area = model_need(m, "bone.area", e), *body = model_find(m, "bone.body");
-    if (!element || !anchor || !point || !depth || !area || !model_need(m, "bone.normal", e))
-        return -1;
-    f->count = element->rows;
-    f->element = element->i32;
-    f->anchor = anchor->i32;
-    f->body = body ? body->i32 : NULL;
-    f->point = point->f64;
-    f->depth = depth->f64;
-    f->area = area->f64;
-    for (int64_t i = 0; i < f->count; i++)
-        if (!(f->depth[i] > 0) || !(f->area[i] > 0))
-            return err_set(e, NULL, 0, "bone.depth and bone.area, row %lld, are %g and %g; expected both above 0",
-                           (long long)i, f->depth[i], f->area[i]);
-    return 0;
-}
-
-/* Unit normals as they are used: those of a model may be off in length by a little. */
-static int take_normals(films *f, const model *m, err *e)
-{
-    const float *of = model_find(m, "bone.normal")->f32;
-    f->normal = mem_array(f->count, 3 * sizeof *f->normal, "the films", e);
-    for (int64_t i = 0; f->normal && i < f->count; i++) {
-        const double x = (double)of[3 * i], y = (double)of[3 * i + 1], z = (double)of[3 * i + 2];
-        const double length = sqrt(x * x + y * y + z * z);
-        if (!(length > 0))
-            return err_set(e, NULL, 0, "bone.normal, row %lld, is 0 0 0; expected a unit normal", (long long)i);
-        f->normal[3 * i] = x / length;
-        f->normal[3 * i + 1] = y / length;
-        f->normal[3 * i + 2] = z / length;
-    }
-    return f->normal ? 0 : -1;
-}
-
-/* How far from an element's box a point may be, in its sides: attach takes those that are half a voxel away. */
-static const double farthest = 1;
-
-/* The place of a film's point in its element, in its sides from the first corner. */
-static int place_of(const films *f, const tled_problem *p, int64_t film, double at[3], err *e)
-{
-    const int32_t *node = p->element_node + 8 * (int64_t)f->element[film];
-    for (int a = 0; a < 3; a++) {
-        at[a] = (f->point[3 * film + a] - p->position[3 * (int64_t)node[0] + a]) / p->side[a];
-        if (!(at[a] >= -farthest && at[a] <= 1 + farthest))
-            return err_set(e, NULL, 0, "bone.point, row %lld, is away from its element, %d; expected it near to that",
-                           (long long)film, (int)f->element[film]);
-    }
-    return 0;
-}
-
-/* g of a corner. */
-static void slope_of(const films *f, const tled_problem *p, int64_t film, const double at[3], int corner, double g[3])
-{
-    const double *n = f->normal + 3 * film;
-    double of[3], grad[3], along = 0;
-    for (int a = 0; a < 3; a++)
-        of[a] = lattice_vtk[corner][a] ? at[a] : 1 - at[a];
-    for (int a = 0; a < 3; a++) {
-        grad[a] = (lattice_vtk[corner][a] ? 1 : -1) / p->side[a] * of[(a + 1) % 3] * of[(a + 2) % 3];
-        along += grad[a] * n[a];
-    }
-    for (int a = 0; a < 3; a++)
-        g[a] = of[0] * of[1] * of[2] / f->depth[film] * n[a] + (grad[a] - along * n[a]) / 2;
-}
-
-static int find_slopes(films *f, const tled_problem *p, err *e)
-{
-    double at[3] = {0};
-    f->slope = mem_array(f->count, 24 * sizeof *f->slope, "the films", e);
-    if (!f->slope)
-        return -1;
-    for (int64_t i = 0; i < f->count; i++) {
-        if (place_of(f, p, i, at, e))
-            return -1;
-        for (int c = 0; c < 8; c++)
-            slope_of(f, p, i, at, c, f->slope + 24 * i + 3 * (int64_t)c);
-    }
-    return 0;
-}
-
 /* The nodes that films pull, and which films do. */
 static int list_nodes(films *f, const tled_problem *p, err *e)
 {
-    const int64_t corners = 8 * f->count;
+    const int64_t corners = 8 * f->rows.count;
     int32_t *place = mem_array(p->nodes, sizeof *place, "the films", e);
     f->node = mem_array(p->nodes, sizeof *f->node, "the films", e);
     f->place = mem_array(corners, sizeof *f->place, "the films", e);
@@ -131,14 +44,14 @@ static int list_nodes(films *f, const tled_problem *p, err *e)
     f->pull_start = mem_array(p->nodes + 2, sizeof *f->pull_start, "the films", e);
     const bool made = place && f->node && f->place && f->pull && f->pull_start;
     for (int64_t i = 0; made && i < corners; i++)
-        place[p->element_node[8 * (int64_t)f->element[i / 8] + i % 8]] = 1;
+        place[p->element_node[8 * (int64_t)f->rows.element[i / 8] + i % 8]] = 1;
     for (int64_t n = 0; made && n < p->nodes; n++)
         if (place[n]) {
             place[n] = (int32_t)f->nodes;
             f->node[f->nodes++] = (int32_t)n;
         }
     for (int64_t i = 0; made && i < corners; i++) {
-        f->place[i] = place[p->element_node[8 * (int64_t)f->element[i / 8] + i % 8]];
+        f->place[i] = place[p->element_node[8 * (int64_t)f->rows.element[i / 8] + i % 8]];
         f->pull_start[f->place[i] + 2]++;
     }
     for (int64_t n = 0; made && n < f->nodes; n++)
@@ -157,18 +70,18 @@ static bool is_any(const float *of, int64_t element)
 
 static int find_fibres(films *f, const tled_problem *p, err *e)
 {
-    f->fibred = mem_array(f->count, 1, "the films", e);
-    for (int64_t i = 0; f->fibred && i < f->count; i++)
-        f->fibred[i] = is_any(p->fibre, f->element[i]) || is_any(p->mixfibre, f->element[i]) ||
-                       fibres_any(&p->fibres, p->element_volume[f->element[i]]) ||
-                       fibres_any(&p->fibres, tled_mix(p, f->element[i]));
+    f->fibred = mem_array(f->rows.count, 1, "the films", e);
+    for (int64_t i = 0; f->fibred && i < f->rows.count; i++)
+        f->fibred[i] = is_any(p->fibre, f->rows.element[i]) || is_any(p->mixfibre, f->rows.element[i]) ||
+                       fibres_any(&p->fibres, p->element_volume[f->rows.element[i]]) ||
+                       fibres_any(&p->fibres, tled_mix(p, f->rows.element[i]));
     return f->fibred ? 0 : -1;
 }
 
 static int check_muscles(const films *f, const tled_problem *p, err *e)
 {
-    for (int64_t i = 0; p->serial && i < f->count; i++) {
-        const int32_t volume = p->element_volume[f->element[i]], mix = tled_mix(p, f->element[i]);
+    for (int64_t i = 0; p->serial && i < f->rows.count; i++) {
+        const int32_t volume = p->element_volume[f->rows.element[i]], mix = tled_mix(p, f->rows.element[i]);
         const bool is_own = p->volume[volume].serial;
         if (is_own || (mix >= 0 && p->volume[mix].serial))
             return err_set(e, NULL, 0,
@@ -179,113 +92,29 @@ static int check_muscles(const films *f, const tled_problem *p, err *e)
     return 0;
 }
 
-/* Of a model that has any. */
-static int begin(tled_problem *p, const model *m, err *e)
-{
-    if (p->conforming)
-        return err_set(e, NULL, 0, "bone.element is of elements without a lattice; expected a lattice's boxes");
-    p->films = mem_array(1, sizeof *p->films, "the films", e);
-    return p->films ? borrow(p->films, m, e) : -1;
-}
-
-/* ---- shares */
-
-typedef struct share_row {
-    double share;
-    const float *moments;
-} share_row;
-
-/* What films have of an element is never all of it, so that all nodes hang on something. */
-static const double most_of = .8;
-
-static int check_rows(const model_array *element, const model_array *share, err *e)
-{
-    for (int64_t i = 1; i < element->rows; i++)
-        if (element->i32[i] <= element->i32[i - 1])
-            return err_set(e, NULL, 0, "film.element, row %lld is %d after %d; expected ascending numbers",
-                           (long long)i, (int)element->i32[i], (int)element->i32[i - 1]);
-    return share ? 0 : -1;
-}
-
-static void take_shares(films *f, const tled_problem *p, const model_array *element, const float *share)
-{
-    for (int64_t i = 0; i < p->elements; i++)
-        f->fraction[i] = f->whole ? f->whole[i] : 1;
-    for (int64_t i = 0; i < element->rows; i++) {
-        const double whole = (double)f->fraction[element->i32[i]];
-        f->fraction[element->i32[i]] = (float)(whole - fmin((double)share[i], most_of * whole));
-    }
-}
-
-/* The moments of what is left of an element: whole - part, by their means and shares. */
-static void moments_left(const float *whole, double share, const float *part, double taken, float *to)
-{
-    const double left = fmax(share - taken, (1 - most_of) * share);
-    for (int k = 0; k < CUT_MOMENTS; k++) {
-        const double of_whole = whole ? (double)whole[k] : 0;
-        const double of_part = taken < most_of * share ? (double)part[k] : of_whole;
-        const double rest = share * of_whole - fmin(taken, most_of * share) * of_part;
-        to[k] = (float)fmax(-1, fmin(1, rest / left));
-    }
-}
-
-/* The next row from k on of an element that is no laminate: of those what films leave has the share alone. */
-static int64_t next_cut(const tled_problem *p, const model_array *element, int64_t k)
-{
-    while (k < element->rows && tled_border(p, element->i32[k]))
-        k++;
-    return k;
-}
-
-/* Rows of elements that are cut, by the model or by films; those of both are in order. */
-static int join_cuts(films *f, tled_problem *p, const model_array *element, const float *share, const float *moments,
-                     err *e)
-{
-    const cut_moments of = p->cut;
-    const int64_t room = of.count + element->rows;
-    int64_t count = 0;
-    f->cut_element = mem_array(room, sizeof *f->cut_element, "the films", e);
-    f->cut_moments = f->cut_element ? mem_array(room, CUT_MOMENTS * sizeof *f->cut_moments, "the films", e) : NULL;
-    if (!f->cut_moments)
-        return -1;
-    for (int64_t i = 0, k = next_cut(p, element, 0); i < of.count || k < element->rows; count++) {
-        const int32_t cut = i < of.count ? of.element[i] : INT32_MAX;
-        const int32_t film = k < element->rows ? element->i32[k] : INT32_MAX;
-        const int32_t at = cut < film ? cut : film;
-        const float *whole = of.of + CUT_MOMENTS * i;
-        float *to = f->cut_moments + CUT_MOMENTS * count;
-        f->cut_element[count] = at;
-        if (film == at)
-            moments_left(cut == at ? whole : NULL, films_whole(p, at), moments + CUT_MOMENTS * k, (double)share[k], to);
-        else
-            memcpy(to, whole, CUT_MOMENTS * sizeof *to);
-        i += cut == at;
-        k = film == at ? next_cut(p, element, k + 1) : k;
-    }
-    p->cut = (cut_moments){f->cut_element, f->cut_moments, count};
-    return 0;
-}
-
 int films_share(tled_problem *p, const model *m, err *e)
 {
-    const model_array *element = model_find(m, "film.element"), *share = model_find(m, "film.share");
-    if (!model_find(m, "bone.element") && !element)
+    const element_mesh mesh = {
+        p->element_node, 8,         p->elements, p->position, !p->conforming, {p->side[0], p->side[1], p->side[2]},
+        p->cut,          p->borders};
+    bone_films rows;
+    if (bone_films_make(&rows, &mesh, m, e)) {
+        bone_films_free(&rows);
+        return -1;
+    }
+    if (!rows.count)
         return 0;
-    if (begin(p, m, e))
+    p->films = mem_array(1, sizeof *p->films, "the films", e);
+    if (!p->films) {
+        bone_films_free(&rows);
         return -1;
-    films *f = p->films;
-    element = model_need(m, "film.element", e);
-    share = element ? model_need(m, "film.share", e) : NULL;
-    const model_array *moments = share ? model_need(m, "film.moments", e) : NULL;
-    if (!moments || check_rows(element, share, e))
+    }
+    p->films->rows = rows;
+    p->films->whole = p->fraction;
+    if (film_rest_make(&p->films->rest, m, p->elements, p->fraction, &p->borders, &p->cut, e))
         return -1;
-    f->whole = p->fraction;
-    f->fraction = mem_array(p->elements, sizeof *f->fraction, "the films", e);
-    if (!f->fraction)
-        return -1;
-    take_shares(f, p, element, share->f32);
-    p->fraction = f->fraction;
-    return p->cut.count ? join_cuts(f, p, element, share->f32, moments->f32, e) : 0;
+    p->fraction = p->films->rest.fraction;
+    return 0;
 }
 
 double films_whole(const tled_problem *p, int64_t element)
@@ -297,42 +126,32 @@ double films_whole(const tled_problem *p, int64_t element)
 
 /* ---- strain and stress */
 
-void films_bone(const tled_problem *p, int64_t film, const double *value, double u[3], double turn[3][3])
+film_bone films_bone(const tled_problem *p, int64_t film, const double *value)
 {
     const int32_t *hold = p->hold + 3 * (p->nodes + film);
-    memset(turn, 0, 9 * sizeof turn[0][0]);
+    film_bone to = {.u = {0}};
     for (int a = 0; a < 3; a++)
-        u[a] = hold[a] >= 0 ? moves_to(value, hold[a], a, p->films->point + 3 * film) : 0;
-    if (hold[0] < 0 || !(hold[0] & MOVES_BODY))
-        return;
-    for (int i = 0; i < 9; i++) /* columns of A: the curves after the first */
-        turn[i / 3][i % 3] = value[3 * ((int64_t)(hold[0] & MOVES_CURVE) + 1 + i % 3) + i / 3];
+        to.u[a] = hold[a] >= 0 ? moves_to(value, hold[a], a, p->films->rows.point + 3 * film) : 0;
+    for (int i = 0; i < 9 && hold[0] >= 0 && (hold[0] & MOVES_BODY); i++) /* columns of A: the curves after the first */
+        to.turn[i / 3][i % 3] = value[3 * ((int64_t)(hold[0] & MOVES_CURVE) + 1 + i % 3) + i / 3];
+    return to;
 }
 
-/* What a film's gradient has of the bone: R - I - (R - I) T / 2 - u n / d. */
-static void of_bone(const tled_problem *p, int64_t film, const double *value, double h[3][3])
+bool films_are_moved(const tled_problem *p)
 {
-    const double *n = p->films->normal + 3 * film;
-    double u[3], turn[3][3];
-    films_bone(p, film, value, u, turn);
-    for (int i = 0; i < 3; i++) {
-        const double along = turn[i][0] * n[0] + turn[i][1] * n[1] + turn[i][2] * n[2];
-        for (int k = 0; k < 3; k++)
-            h[i][k] = (turn[i][k] + along * n[k]) / 2 - u[i] / p->films->depth[film] * n[k];
-    }
+    for (int64_t i = 3 * p->nodes; i < 3 * (p->nodes + films_count(p)); i++)
+        if (p->hold[i] >= 0)
+            return true;
+    return false;
 }
 
 element_tensor films_gradient(const tled_problem *p, int64_t film, const double *moved, const int32_t *at,
                               const double *value)
 {
-    const double *slope = p->films->slope + 24 * film;
-    double h[3][3];
-    of_bone(p, film, value, h);
-    for (int c = 0; c < 8; c++)
-        for (int i = 0; i < 9; i++)
-            h[i / 3][i % 3] += moved[3 * (int64_t)at[c] + i / 3] * slope[3 * c + i % 3];
-    const element_tensor to = {h[0][0], h[0][1], h[0][2], h[1][0], h[1][1], h[1][2], h[2][0], h[2][1], h[2][2]};
-    return to;
+    const film_bone bone = films_bone(p, film, value);
+    double h[9];
+    bone_films_gradient(&p->films->rows, film, &bone, moved, at, h);
+    return (element_tensor){h[0], h[1], h[2], h[3], h[4], h[5], h[6], h[7], h[8]};
 }
 
 static const tled_law *law_of(const tled_problem *p, int64_t element)
@@ -342,7 +161,7 @@ static const tled_law *law_of(const tled_problem *p, int64_t element)
 
 element_tensor films_stress(const tled_problem *p, int64_t film, element_tensor h, const double *value)
 {
-    const int64_t element = p->films->element[film];
+    const int64_t element = p->films->rows.element[film];
     const tled_law *law = law_of(p, element);
     if (!p->films->fibred[film])
         return form_stress(p->form, h, law->c);
@@ -354,16 +173,17 @@ element_tensor films_stress(const tled_problem *p, int64_t film, element_tensor 
 double films_energy(const tled_problem *p, int64_t film, element_tensor h)
 {
     const films *f = p->films;
-    const int64_t element = f->element[film];
+    const int64_t element = f->rows.element[film];
     const fibre_sets sets = fibre_sets_at(&p->fibres, element);
-    return f->area[film] * f->depth[film] *
+    return f->rows.area[film] * f->rows.depth[film] *
            (form_energy(p->form, h, law_of(p, element)->c) + muscle_fibre_energy(p, element, h) +
             fibre_sets_energy(&sets, h));
 }
 
 void films_pull(const films *f, int64_t film, int corner, const element_tensor *s, double pull[3])
 {
-    const double *g = f->slope + 24 * film + 3 * (int64_t)corner, volume = f->area[film] * f->depth[film];
+    const double *g = f->rows.slope + 24 * film + 3 * (int64_t)corner,
+                 volume = f->rows.area[film] * f->rows.depth[film];
     pull[0] = volume * (s->xx * g[0] + s->xy * g[1] + s->xz * g[2]);
     pull[1] = volume * (s->yx * g[0] + s->yy * g[1] + s->yz * g[2]);
     pull[2] = volume * (s->zx * g[0] + s->zy * g[1] + s->zz * g[2]);
@@ -377,8 +197,8 @@ int films_room(films_work *w, const tled_problem *p, err *e)
     if (!p->films)
         return 0;
     w->moved = mem_array(p->films->nodes, 3 * sizeof *w->moved, "the films", e);
-    w->stress = mem_array(p->films->count, 9 * sizeof *w->stress, "the films", e);
-    w->stiffness = mem_array(p->films->count, 8 * sizeof *w->stiffness, "the films", e);
+    w->stress = mem_array(p->films->rows.count, 9 * sizeof *w->stress, "the films", e);
+    w->stiffness = mem_array(p->films->rows.count, 8 * sizeof *w->stiffness, "the films", e);
     return w->moved && w->stress && w->stiffness ? 0 : -1;
 }
 
@@ -392,7 +212,7 @@ void films_room_free(films_work *w)
 
 int64_t films_bytes(const films *f)
 {
-    return f ? (int64_t)sizeof(double) * (3 * f->nodes + 17 * f->count) : 0;
+    return f ? (int64_t)sizeof(double) * (3 * f->nodes + 17 * f->rows.count) : 0;
 }
 
 static void strain_work(void *context, int64_t chunk, int64_t from, int64_t to)
@@ -411,7 +231,7 @@ static void strain_work(void *context, int64_t chunk, int64_t from, int64_t to)
 void films_strain(films_work *w, pool *threads, const double *value)
 {
     w->value = value;
-    pool_run(threads, w->p->films->count, CHUNK, strain_work, w);
+    pool_run(threads, w->p->films->rows.count, CHUNK, strain_work, w);
 }
 
 void films_sum(const films_work *w, int64_t i, double force[3])
@@ -434,8 +254,8 @@ double films_energies(const tled_problem *p, const double *displacement, const d
     const films *f = p->films;
     double sum = 0;
     for (int64_t i = 0; i < films_count(p); i++)
-        sum +=
-            films_energy(p, i, films_gradient(p, i, displacement, p->element_node + 8 * (int64_t)f->element[i], value));
+        sum += films_energy(
+            p, i, films_gradient(p, i, displacement, p->element_node + 8 * (int64_t)f->rows.element[i], value));
     return sum;
 }
 
@@ -469,18 +289,18 @@ static void stiffness_of(const tled_problem *p, int64_t film, element_tensor h, 
 {
     static const double unit[3] = {1, 1, 1}; /* so that the matrix is dP/dF itself, with a density of 4 */
     const films *f = p->films;
-    const int64_t element = f->element[film];
+    const int64_t element = f->rows.element[film];
     const step_fibres of = step_fibres_of(p, element, value);
     double all = 0;
     step_matrix a;
     stability_matrix_fibred(p->form, law_of(p, element)->c, 4, unit, h, of.own, of.other, of.sets.of, of.sets.count,
                             &a);
     for (int c = 0; c < 8; c++) {
-        to[c] = root_of(&a, f->slope + 24 * film + 3 * (int64_t)c);
+        to[c] = root_of(&a, f->rows.slope + 24 * film + 3 * (int64_t)c);
         all += to[c];
     }
     for (int c = 0; c < 8; c++)
-        to[c] *= f->area[film] * f->depth[film] * all;
+        to[c] *= f->rows.area[film] * f->rows.depth[film] * all;
 }
 
 /* Those of all films at displacements of all nodes; NULL: at rest. */
@@ -495,7 +315,7 @@ static void stiffness_work(void *context, int64_t chunk, int64_t from, int64_t t
     const tled_problem *p = s->w->p;
     (void)chunk;
     for (int64_t i = from; i < to; i++) {
-        const int32_t *node = p->element_node + 8 * (int64_t)p->films->element[i];
+        const int32_t *node = p->element_node + 8 * (int64_t)p->films->rows.element[i];
         const element_tensor rest = {0};
         const element_tensor h = s->displacement ? films_gradient(p, i, s->displacement, node, s->value) : rest;
         stiffness_of(p, i, h, s->value, s->w->stiffness + 8 * i);
@@ -522,7 +342,7 @@ double films_square(films_work *w, pool *threads, const double *displacement, co
     stiffening s = {w, displacement, value};
     if (!f)
         return square;
-    pool_run(threads, f->count, CHUNK, stiffness_work, &s);
+    pool_run(threads, f->rows.count, CHUNK, stiffness_work, &s);
     return fmax(largest(w, fmax(1, square / f->elements_square)), square);
 }
 
@@ -540,7 +360,7 @@ static int find_square(films *f, const tled_problem *p, err *e)
     }
     if (!failed) {
         stiffening s = {&w, NULL, NULL};
-        stiffness_work(&s, 0, 0, f->count);
+        stiffness_work(&s, 0, 0, f->rows.count);
         f->elements_square = step_elements_at_rest(p, NULL);
         f->square = fmax(largest(&w, 1), f->elements_square);
     }
@@ -553,19 +373,16 @@ static void find_taken(films *f, const tled_problem *p)
     double taken = 0, all = 0;
     for (int64_t i = 0; i < p->elements; i++)
         taken += (films_whole(p, i) - tled_fraction(p, i)) * p->side[0] * p->side[1] * p->side[2];
-    for (int64_t i = 0; i < f->count; i++)
-        all += f->area[i] * f->depth[i];
+    for (int64_t i = 0; i < f->rows.count; i++)
+        all += f->rows.area[i] * f->rows.depth[i];
     f->taken = all > 0 ? taken / all : 0;
 }
 
-int films_make(tled_problem *p, const model *m, err *e)
+int films_make(tled_problem *p, err *e)
 {
     films *f = p->films;
     if (!f)
         return 0;
     find_taken(f, p);
-    return check_muscles(f, p, e) || take_normals(f, m, e) || find_slopes(f, p, e) || find_fibres(f, p, e) ||
-                   list_nodes(f, p, e) || find_square(f, p, e)
-               ? -1
-               : 0;
+    return check_muscles(f, p, e) || find_fibres(f, p, e) || list_nodes(f, p, e) || find_square(f, p, e) ? -1 : 0;
 }

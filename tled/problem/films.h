@@ -1,12 +1,8 @@
-/* Films of tissue on bone, which hold a model of attach --surface. A film has the area A and the thickness d; on one
- * side it hangs on the bone, on the other on a point x of an element. Where neither moves by the bone's turn alone,
- * with w what the point is displaced by more than the bone, T = I - n (x) n and R the turn, the film's mean gradient is
- *     F = R + w (x) n / d + (grad u - (R - I)) T / 2,   w = u(x) - u_bone(x),
- * as bone does not stretch: along the bone the film is strained by half of what the element is there. It has the energy
- * A d W(F) of the element's law, its muscles and its fibres. By the element's shape functions F is linear in u_a,
- *     F = sum_a u_a (x) g_a + what the bone does,   g_a = N_a(x) n / d + T grad N_a(x) / 2,
- * so its pull on the element's corners is the derivative of an energy, A d P(F) g_a. Elements have what films leave
- * them: their share, the moments of the rest and the weight go by film.share, their mass is the whole.
+/* Films of tissue on bone, which hold a model of attach --surface. A film has the gradient F of mesh/bone_films.h and
+ * the energy A d W(F) of its element's law, its muscles and its fibres. F is linear in the displacements of the
+ * element's corners, sum_a u_a (x) g_a and what the bone does; so a film's pull on these is the derivative of an
+ * energy, A d P(F) g_a. Elements have what films leave them: their share, the moments of the rest and the weight go by
+ * film.share, their mass is the whole.
  *
  * Against this, a spring (lambda + 2 mu) A/h at the bone's surface would yield as a further layer of tissue h thick
  * does: its error is of order 1.
@@ -23,36 +19,32 @@
 #define SINEW_FILMS_H
 
 #include "base/pool.h"
+#include "mesh/bone_films.h"
 #include "tled/problem/state.h"
 
 typedef struct films {
-    int64_t count, nodes;
-    const int32_t *element, *anchor, *body; /* body: NULL: none has one */
-    const double *point, *depth, *area;     /* m; count x 3, count, count */
-    double *normal;                         /* count x 3; owned, as is all below */
-    double *slope;                          /* count x 8 x 3: g, 1/m */
-    uint8_t *fibred;                        /* count: whether its element has fibres, of either volume */
-    int32_t *node;                          /* nodes: of the model, ascending, that films pull */
-    int32_t *place;                         /* count x 8: a corner's among these */
-    int32_t *pull_start, *pull;             /* nodes + 1; count x 8: 8 film + corner, ascending at each node */
-    float *fraction;                        /* elements: what films leave of their share */
-    const float *whole;                     /* elements: their share with films, or NULL: 1 */
-    int32_t *cut_element;                   /* cut elements, with those that are cut by films alone */
-    float *cut_moments;                     /* of what films leave */
-    double *borne;                          /* nodes, 1/s2: of elements, over the mass */
-    double taken;                           /* of all films' volume, that elements do not count as theirs */
-    double elements_square, square;         /* 1/s2: the largest of elements; of the model with films, at rest */
+    bone_films rows;    /* owned, as is all but `whole` */
+    film_rest rest;     /* what films leave of elements */
+    const float *whole; /* elements: their share with films, or NULL: 1 */
+    uint8_t *fibred;    /* films: whether its element has fibres, of either volume */
+    int64_t nodes;
+    int32_t *node;                  /* nodes: of the model, ascending, that films pull */
+    int32_t *place;                 /* films x 8: a corner's among these */
+    int32_t *pull_start, *pull;     /* nodes + 1; films x 8: 8 film + corner, ascending at each node */
+    double *borne;                  /* nodes, 1/s2: of elements, over the mass */
+    double taken;                   /* of all films' volume, that elements do not count as theirs */
+    double elements_square, square; /* 1/s2: the largest of elements; of the model with films, at rest */
 } films;
 
 /* Takes shares and moments away from elements, where the model has films; of laminates, which have to be known by now,
  * shares alone. Then, where masses and laws are known, makes the films. -1 with e filled. */
 int films_share(tled_problem *p, const model *m, err *e);
-int films_make(tled_problem *p, const model *m, err *e);
+int films_make(tled_problem *p, err *e);
 void films_free(films *f);
 
 static inline int64_t films_count(const tled_problem *p)
 {
-    return p->films ? p->films->count : 0;
+    return p->films ? p->films->rows.count : 0;
 }
 
 /* What an element has of mass, in parts of its box, before any least. */

@@ -441,7 +441,7 @@ int tled_problem_make(tled_problem *p, const model *m, const script *s, hourglas
     if ((boxes && check_boxes(p, e)) || check_fractions(p, e) || check_mixes(p, e) || (boxes && join_own(p, m, e)) ||
         cut_borrow(p, m, e) || border_borrow(p, m, e) || films_share(p, m, e) || make_laws(p, m, e) ||
         make_fields(p, e) || (boxes ? make_corners(p, e) : conforming_corners(p, e)) || cut_weigh(p, e) ||
-        films_make(p, m, e) || loads_make(p, m, e) || followers_make(p, m, e) || bodies_make(p, m, e))
+        films_make(p, e) || loads_make(p, m, e) || followers_make(p, m, e) || bodies_make(p, m, e))
         return -1;
     p->hold = mem_array(p->nodes + films_count(p), 3 * sizeof *p->hold, "the nodes", e);
     if (!p->hold)

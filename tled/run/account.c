@@ -110,11 +110,11 @@ static void add_element(account *a, int64_t i, element_shape box, account_sums *
 static double film_muscles(account *a, int64_t i, element_tensor h)
 {
     const tled_problem *p = a->p;
-    const int64_t element = p->films->element[i];
+    const int64_t element = p->films->rows.element[i];
     const float *const along[2] = {p->fibre, p->mixfibre};
     const int32_t volume[2] = {p->element_volume[element], tled_mix(p, element)};
     const double share[2] = {1 - tled_mixture(p, element), tled_mixture(p, element)};
-    const double rest = p->films->area[i] * p->films->depth[i];
+    const double rest = p->films->rows.area[i] * p->films->rows.depth[i];
     double sum = 0;
     for (int k = 0; k < 2; k++) {
         if (!along[k] || volume[k] < 0 || p->volume[volume[k]].contract < 0)
@@ -132,30 +132,29 @@ static double film_muscles(account *a, int64_t i, element_tensor h)
 static double bone_work(const account *a, int64_t i)
 {
     const films *f = a->p->films;
-    const double *n = f->normal + 3 * i;
+    const double *n = f->rows.normal + 3 * i;
     const element_tensor *s = &a->before.film[i], *t = &a->now.film[i];
     const double stress[3][3] = {{s->xx + t->xx, s->xy + t->xy, s->xz + t->xz},
                                  {s->yx + t->yx, s->yy + t->yy, s->yz + t->yz},
                                  {s->zx + t->zx, s->zy + t->zy, s->zz + t->zz}};
-    double was[3], is[3], turned[3][3], turn[3][3], sum = 0;
-    films_bone(a->p, i, a->before.curves, was, turned);
-    films_bone(a->p, i, a->now.curves, is, turn);
+    const film_bone was = films_bone(a->p, i, a->before.curves), is = films_bone(a->p, i, a->now.curves);
+    double sum = 0;
     for (int r = 0; r < 3; r++) {
+        const double way = (is.u[r] - was.u[r]) / f->rows.depth[i];
         double along = 0;
         for (int k = 0; k < 3; k++)
-            along += (turn[r][k] - turned[r][k]) * n[k];
+            along += (is.turn[r][k] - was.turn[r][k]) * n[k];
         for (int k = 0; k < 3; k++)
-            sum +=
-                stress[r][k] * ((turn[r][k] - turned[r][k] + along * n[k]) / 2 - (is[r] - was[r]) / f->depth[i] * n[k]);
+            sum += stress[r][k] * ((is.turn[r][k] - was.turn[r][k] + along * n[k]) / 2 - way * n[k]);
     }
-    return f->area[i] * f->depth[i] * sum / 2;
+    return f->rows.area[i] * f->rows.depth[i] * sum / 2;
 }
 
 static void read_films(account *a)
 {
     const tled_problem *p = a->p;
     for (int64_t i = 0; i < films_count(p); i++) {
-        const int32_t *node = p->element_node + 8 * (int64_t)p->films->element[i];
+        const int32_t *node = p->element_node + 8 * (int64_t)p->films->rows.element[i];
         const element_tensor h = films_gradient(p, i, a->now.displacement, node, a->now.curves);
         a->now.film[i] = films_stress(p, i, h, a->now.curves);
         a->now.sums.tissue.strain += films_energy(p, i, h);

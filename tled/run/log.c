@@ -8,6 +8,7 @@
 #include "base/path.h"
 #include "model/rest_place.h"
 #include "tled/problem/bodies.h"
+#include "tled/problem/film_strain.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -204,7 +205,8 @@ static int make_energies(run_log *l, err *e)
     if (!wanted)
         return 0;
     l->energy = mem_array(model_count(l->m, "material"), sizeof *l->energy, "the log", e);
-    return l->energy ? results_create(&l->results, l->m, 0, l->threads, e) : -1;
+    l->bone = mem_array(films_count(l->p), sizeof *l->bone, "the log", e);
+    return l->energy && l->bone ? results_create(&l->results, l->m, 0, l->threads, e) : -1;
 }
 
 int log_begin(run_log *l, const tled_problem *p, pool *threads, err *e)
@@ -296,7 +298,9 @@ static void put_muscles(const run_log *l, bool levels, double time)
 
 static void put_energies(const run_log *l)
 {
-    results_energies(l->results, account_displacement(l->account), l->energy);
+    for (int64_t i = 0; i < films_count(l->p); i++)
+        l->bone[i] = films_bone(l->p, i, account_curves(l->account));
+    results_energies(l->results, account_displacement(l->account), l->bone, l->energy);
     for (int64_t i = 0; i < model_count(l->m, "material"); i++)
         put_number(l->rows, l->energy[i]);
 }
@@ -396,8 +400,10 @@ int log_close(run_log *l, err *e)
     account_destroy(l->account);
     results_destroy(l->results);
     free(l->energy);
+    free(l->bone);
     l->results = NULL;
     l->energy = NULL;
+    l->bone = NULL;
     out_discard(l->rows);
     l->account = NULL;
     l->rows = NULL;

@@ -28,16 +28,17 @@ typedef struct run_log {
     growing *file;
     out *rows; /* not yet known to be sound */
     account *account;
-    const script *script;  /* the creator's, which the problem is made of */
-    const opt_list *keys;  /* node.displacement.at.X,Y,Z: three columns each, after the others; or LOG_... */
-    int64_t node[64];      /* of each */
-    results *results;      /* energies by material, where a key asks for them; owned */
-    double *energy;        /* J: of each; owned */
-    const tled_problem *p; /* the creator's, before log_open: it decides about columns */
-    const model *m;        /* that it was made of: its bodies' names */
-    pool *threads;         /* the run's */
-    int64_t steps;         /* of the last row, each part of a cut step for itself */
-    double began;          /* when the last row was, by the clock */
+    const script *script;   /* the creator's, which the problem is made of */
+    const opt_list *keys;   /* node.displacement.at.X,Y,Z: three columns each, after the others; or LOG_... */
+    int64_t node[64];       /* of each */
+    results *results;       /* energies by material, where a key asks for them; owned */
+    double *energy;         /* J: of each; owned */
+    struct film_bone *bone; /* for these, of each film; owned */
+    const tled_problem *p;  /* the creator's, before log_open: it decides about columns */
+    const model *m;         /* that it was made of: its bodies' names */
+    pool *threads;          /* the run's */
+    int64_t steps;          /* of the last row, each part of a cut step for itself */
+    double began;           /* when the last row was, by the clock */
     bool is_pending;
     log_row last;                /* of the last reading */
     const account_sums *unshown; /* its sums, borrowed from the account; NULL: it has its row */

@@ -2,9 +2,11 @@
 
 #include "base/mem.h"
 #include "tled/problem/bodies.h"
+#include "tled/problem/film_strain.h"
 #include "tled/run/tled_live.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 int tled_frame_results(session *s, const struct options *o, err *e)
 {
@@ -59,19 +61,33 @@ static int add_results(session *s, frame *f, const double *value, err *e)
     return results_add(s->results, f, s->activation, e);
 }
 
-/* Where the bodies are, and what the tissue pulls them with; and what elements hold. */
+/* How bone that films hang on has moved, where the script moves any. */
+static int add_bone(const session *s, frame *f, const double *value, err *e)
+{
+    if (!films_are_moved(&s->problem))
+        return 0;
+    model_array *to = frame_add(f, &s->m, "bone.displacement", e);
+    for (int64_t i = 0; to && i < films_count(&s->problem); i++) {
+        const film_bone bone = films_bone(&s->problem, i, value);
+        memcpy(to->f64 + 3 * i, bone.u, sizeof bone.u);
+    }
+    return to ? 0 : -1;
+}
+
+/* Where bone and bodies are, and what the tissue pulls these with; and what elements hold. */
 static int add_looks(session *s, frame *f, const field_values *state, err *e)
 {
     const int count = s->problem.fields.count;
     double *own;
-    if (!bodies_count(&s->problem) && !s->results)
+    if (!bodies_count(&s->problem) && !films_count(&s->problem) && !s->results)
         return 0;
     const double *value = curves_at(s, f->time, &own, e);
     const bodies_state now = {value,
                               state->of[TLED_DISPLACEMENT],
                               {count > TLED_CONTRACTILE ? state->of[TLED_CONTRACTILE] : NULL,
                                count > TLED_MIXCONTRACTILE ? state->of[TLED_MIXCONTRACTILE] : NULL}};
-    const int failed = (!value && !s->live) || bodies_add(&s->problem, s->folds.threads, &now, f, &s->m, e) ||
+    const int failed = (!value && !s->live) || add_bone(s, f, value, e) ||
+                               bodies_add(&s->problem, s->folds.threads, &now, f, &s->m, e) ||
                                add_results(s, f, value, e)
                            ? -1
                            : 0;

@@ -1,5 +1,7 @@
-#include "mesh/energy.h"
+#include "results/energy.h"
 
+#include "base/mem.h"
+#include "mesh/bone_films.h"
 #include "mesh/element_fibres.h"
 #include "mesh/element_motion.h"
 #include "mesh/fibre_sets.h"
@@ -17,8 +19,10 @@ typedef struct view {
     const double *u;
     hourglass_control control;
     element_fibres muscles;
-    fibres_view fibres; /* owned */
-    bool is_old;        /* of a release whose stiffness was kappa min(lambda + 2 mu, 11 mu) V sum(B^2) / 8 */
+    fibres_view fibres; /* owned, as is what follows */
+    bone_films films;
+    film_rest rest; /* what films leave of elements */
+    bool is_old;    /* of a release whose stiffness was kappa min(lambda + 2 mu, 11 mu) V sum(B^2) / 8 */
 } view;
 
 /* By volume at rest, J/m3. What is linear in its strains is taken for neo-Hookean, which has the same coefficients, mu
@@ -49,10 +53,10 @@ static void hold_of(const view *v, double mu, double bulk, double volume, double
 }
 
 /* Its parts' energies, in place of its law's, and its modes'. */
-static void add_laminate(const laminate_motion *l, double volume, energy *to)
+static void add_laminate(const laminate_motion *l, double fraction, double volume, energy *to)
 {
-    to->strain += volume * (laminates_energy(l, 0) + laminates_energy(l, 1));
-    to->hourglass += hourglass_dot(&l->is.held.f, &l->is.modes) / 2;
+    to->strain += fraction * volume * (laminates_energy(l, 0) + laminates_energy(l, 1));
+    to->hourglass += fraction * hourglass_dot(&l->is.held.f, &l->is.modes) / 2;
 }
 
 static void add_element(const view *v, const materials_map *map, int64_t element, double fraction, energy *to)
@@ -74,9 +78,31 @@ static void add_element(const view *v, const materials_map *map, int64_t element
                   ((laminate ? 0 : material_energy(of, is.h)) + muscles_energy(&v->muscles, element, is.h) +
                    fibre_sets_energy(&fibres, is.h));
     if (laminate)
-        add_laminate(&l, is.volume, to);
+        add_laminate(&l, fraction, is.volume, to);
     else
         to->hourglass += fraction * stiffer * hourglass_dot(&force.f, &is.modes) / 2;
+}
+
+/* A film has no modes. */
+static int add_films(const view *v, const materials_map *map, const frame *f, energy *to, err *e)
+{
+    film_bone *bone = v->films.count ? mem_array(v->films.count, sizeof *bone, "the films", e) : NULL;
+    if (v->films.count && !bone)
+        return -1;
+    bone_films_moved(&v->films, f, bone);
+    for (int64_t i = 0; i < v->films.count; i++) {
+        const int64_t element = v->films.element[i];
+        const material_numbers of = materials_of_element(map, element);
+        const fibre_sets fibres = fibre_sets_at(&v->fibres, element);
+        double n[9];
+        bone_films_gradient(&v->films, i, &bone[i], v->u, v->mesh.node + 8 * element, n);
+        const element_tensor h = {n[0], n[1], n[2], n[3], n[4], n[5], n[6], n[7], n[8]};
+        to->strain +=
+            v->films.area[i] * v->films.depth[i] *
+            (material_energy(&of, h) + muscles_energy(&v->muscles, element, h) + fibre_sets_energy(&fibres, h));
+    }
+    free(bone);
+    return 0;
 }
 
 /* How the run that wrote the frames held hourglass modes: hourglass.control, or hourglass.kappa of older releases. */
@@ -115,25 +141,45 @@ static int view_of(view *v, const model *m, const frame *f, err *e)
     return control_of(v, m, e);
 }
 
+static void view_free(view *v)
+{
+    fibres_free(&v->fibres);
+    bone_films_free(&v->films);
+    film_rest_free(&v->rest);
+}
+
+/* What frames do not change. *fraction: the elements' shares. */
+static int open_model(view *v, const model *m, const material *law, const float **fraction, err *e)
+{
+    const model_array *whole = model_find(m, "element.fraction");
+    *fraction = whole ? whole->f32 : NULL;
+    if (fibres_make(&v->fibres, m, law, e) || bone_films_make(&v->films, &v->mesh, m, e))
+        return -1;
+    if (!v->films.count)
+        return 0;
+    if (film_rest_make(&v->rest, m, v->mesh.elements, *fraction, &v->mesh.borders, &v->mesh.cut, e))
+        return -1;
+    *fraction = v->rest.fraction;
+    return 0;
+}
+
 int energy_of(energy *to, const model *m, const frame *f, err *e)
 {
     view v;
-    const model_array *fraction = model_find(m, "element.fraction");
+    const float *fraction = NULL;
     *to = (energy){0};
     if (view_of(&v, m, f, e) || !model_need(m, "element.volume", e))
         return -1;
     material *law = materials_of_volumes(m, e);
-    if (!law || fibres_make(&v.fibres, m, law, e)) {
-        fibres_free(&v.fibres);
-        free(law);
-        return -1;
+    int failed = !law || open_model(&v, m, law, &fraction, e);
+    if (!failed) {
+        const materials_map map = materials_map_of(m, law);
+        v.muscles = element_fibres_of(m, &map);
+        for (int64_t i = 0; i < v.mesh.elements; i++)
+            add_element(&v, &map, i, fraction ? (double)fraction[i] : 1, to);
+        failed = add_films(&v, &map, f, to, e);
     }
-    const materials_map map = materials_map_of(m, law);
-    v.muscles = element_fibres_of(m, &map);
-    const int64_t elements = model_count(m, "element");
-    for (int64_t i = 0; i < elements; i++)
-        add_element(&v, &map, i, fraction ? (double)fraction->f32[i] : 1, to);
-    fibres_free(&v.fibres);
+    view_free(&v);
     free(law);
-    return 0;
+    return failed ? -1 : 0;
 }

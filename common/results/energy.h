@@ -1,6 +1,6 @@
-/* The energies of a model's elements in a frame of tled-run: strain energy, and the energy of the modes that hourglass
- * control resists, as the solver computes them (element.h, element_any.h). The coefficient of hourglass control is the
- * model's metadata hourglass.kappa. Owns nothing.
+/* The energies of a model's elements and films in a frame of tled-run: strain energy, and the energy of the modes that
+ * hourglass control resists, as the solver computes them (element.h, element_any.h, bone_films.h). The coefficient of
+ * hourglass control is the model's metadata hourglass.kappa. Owns nothing.
  */
 #ifndef SINEW_ENERGY_H
 #define SINEW_ENERGY_H
