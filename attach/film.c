@@ -12,11 +12,13 @@
 
 enum { LAYERS = 4 }; /* of a film: its volume is summed in the middle of each */
 
+enum { PRODUCTS = CUT_MOMENTS - 3 }; /* of places' coordinates in an element: xy, yz, zx and xyz */
+
 /* A piece of a film, in one element. */
 typedef struct patch {
     int32_t element, anchor;
-    double point[3], normal[3]; /* times area */
-    double area, depth;         /* m2; m, times area */
+    double point[3], normal[3], product[PRODUCTS]; /* times area */
+    double area, depth;                            /* m2; m, times area */
     int64_t number;
 } patch;
 
@@ -47,6 +49,38 @@ static double area_at(const film_piece *t, double d, double normal[3])
 
 /* ---- pieces */
 
+/* Adds weight times the moments at a place, of a cell. */
+static void add_place(const maker *k, const double x[3], const double cell[3], double weight, double to[CUT_MOMENTS])
+{
+    const lattice *l = &k->sides->grid;
+    double u[3];
+    for (int i = 0; i < 3; i++)
+        u[i] = 2 * ((x[i] - l->origin[i]) / l->spacing[i] - cell[i]) - 1;
+    const double by[CUT_MOMENTS] = {u[0], u[1], u[2], u[0] * u[1], u[1] * u[2], u[2] * u[0], u[0] * u[1] * u[2]};
+    for (int i = 0; i < CUT_MOMENTS; i++)
+        to[i] += weight * by[i];
+}
+
+/* Over a piece, by a rule on triangles that is exact for cubics: their middle, their sides' middles, their corners. */
+static void add_piece(const maker *k, const voxel_piece *piece, const double cell[3], double thick,
+                      double to[CUT_MOMENTS])
+{
+    for (int i = 1; i + 1 < piece->corners; i++) {
+        const double *x[3] = {piece->corner[0], piece->corner[i], piece->corner[i + 1]};
+        double n[3], middle[3];
+        const double volume = film_normal(x[0], x[1], x[2], n) / 2 * thick;
+        for (int a = 0; a < 3; a++)
+            middle[a] = (x[0][a] + x[1][a] + x[2][a]) / 3;
+        add_place(k, middle, cell, volume * 27 / 60, to);
+        for (int c = 0; c < 3; c++) {
+            const double *from = x[c], *next = x[(c + 1) % 3];
+            const double side[3] = {(from[0] + next[0]) / 2, (from[1] + next[1]) / 2, (from[2] + next[2]) / 2};
+            add_place(k, from, cell, volume * 3 / 60, to);
+            add_place(k, side, cell, volume * 8 / 60, to);
+        }
+    }
+}
+
 static int take_patch(void *context, const voxel_piece *piece)
 {
     maker *k = context;
@@ -57,26 +91,18 @@ static int take_patch(void *context, const voxel_piece *piece)
         return -1;
     const double area = piece->area * k->wider;
     patch *to = &k->patch[k->patches];
-    *to = (patch){element, k->at->anchor, {0}, {0}, area, area * k->depth, k->patches};
+    const int32_t *cell = k->sides->cell + 3 * (int64_t)element;
+    const double at[3] = {cell[0], cell[1], cell[2]};
+    double moments[CUT_MOMENTS] = {0};
+    add_piece(k, piece, at, k->wider, moments);
+    *to = (patch){element, k->at->anchor, {0}, {0}, {0}, area, area * k->depth, k->patches};
+    memcpy(to->product, moments + CUT_MOMENTS - PRODUCTS, sizeof to->product);
     for (int a = 0; a < 3; a++) {
         to->point[a] = area * piece->middle[a];
         to->normal[a] = area * k->normal[a];
     }
     k->patches++;
     return 0;
-}
-
-/* Adds the products of places to the sums of an element, by Simpson's rule on triangles: their sides' middles. */
-static void add_places(const maker *k, const double a[3], const double b[3], const double cell[3], double volume,
-                       double *to)
-{
-    const lattice *l = &k->sides->grid;
-    double u[3];
-    for (int i = 0; i < 3; i++)
-        u[i] = 2 * (((a[i] + b[i]) / 2 - l->origin[i]) / l->spacing[i] - cell[i]) - 1;
-    const double by[CUT_MOMENTS] = {u[0], u[1], u[2], u[0] * u[1], u[1] * u[2], u[2] * u[0], u[0] * u[1] * u[2]};
-    for (int i = 0; i < CUT_MOMENTS; i++)
-        to[i] += volume * by[i];
 }
 
 static int take_layer(void *context, const voxel_piece *piece)
@@ -88,14 +114,7 @@ static int take_layer(void *context, const voxel_piece *piece)
         return 0;
     double *to = k->part + (1 + CUT_MOMENTS) * (int64_t)element;
     to[0] += piece->area * k->thick;
-    for (int i = 1; i + 1 < piece->corners; i++) {
-        const double *a = piece->corner[0], *b = piece->corner[i], *c = piece->corner[i + 1];
-        double n[3];
-        const double third = film_normal(a, b, c, n) / 2 * k->thick / 3;
-        add_places(k, a, b, cell, third, to + 1);
-        add_places(k, b, c, cell, third, to + 1);
-        add_places(k, c, a, cell, third, to + 1);
-    }
+    add_piece(k, piece, cell, k->thick, to + 1);
     return 0;
 }
 
@@ -196,6 +215,8 @@ static void join(maker *k)
             to->point[a] += from->point[a];
             to->normal[a] += from->normal[a];
         }
+        for (int a = 0; a < PRODUCTS; a++)
+            to->product[a] += from->product[a];
         to->area += from->area;
         to->depth += from->depth;
     }
@@ -230,7 +251,8 @@ static int write_bone(const maker *k, model *m, double *area, err *e)
     model_array *normal = point ? model_add(m, "bone.normal", e) : NULL;
     model_array *depth = normal ? model_add(m, "bone.depth", e) : NULL;
     model_array *of_area = depth ? model_add(m, "bone.area", e) : NULL;
-    for (int64_t i = 0; of_area && i < k->patches; i++) {
+    model_array *products = of_area ? model_add(m, "bone.products", e) : NULL;
+    for (int64_t i = 0; products && i < k->patches; i++) {
         const patch *p = &k->patch[i];
         const double length = sqrt(dot(p->normal, p->normal));
         element->i32[i] = p->element;
@@ -239,11 +261,13 @@ static int write_bone(const maker *k, model *m, double *area, err *e)
             point->f64[3 * i + a] = p->point[a] / p->area;
             normal->f32[3 * i + a] = (float)(p->normal[a] / length);
         }
+        for (int a = 0; a < PRODUCTS; a++)
+            products->f32[PRODUCTS * i + a] = (float)(p->product[a] / p->area);
         depth->f64[i] = p->depth / p->area;
         of_area->f64[i] = p->area;
         *area += p->area;
     }
-    return of_area ? add_bodies(k, m, point->f64, e) : -1;
+    return products ? add_bodies(k, m, point->f64, e) : -1;
 }
 
 static int write_film(const maker *k, model *m, int64_t elements, err *e)

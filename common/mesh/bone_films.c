@@ -41,6 +41,7 @@ static int borrow(bone_films *f, const element_mesh *mesh, const model *m, err *
     const model_array *element = model_need(m, "bone.element", e), *anchor = model_need(m, "bone.anchor", e);
     const model_array *point = model_need(m, "bone.point", e), *depth = model_need(m, "bone.depth", e);
     const model_array *area = model_need(m, "bone.area", e), *body = model_find(m, "bone.body");
+    const model_array *products = model_find(m, "bone.products");
     if (!element || !anchor || !point || !depth || !area || !model_need(m, "bone.normal", e))
         return -1;
     *f = (bone_films){.count = element->rows,
@@ -49,7 +50,8 @@ static int borrow(bone_films *f, const element_mesh *mesh, const model *m, err *
                       .body = body ? body->i32 : NULL,
                       .point = point->f64,
                       .depth = depth->f64,
-                      .area = area->f64};
+                      .area = area->f64,
+                      .products = products ? products->f32 : NULL};
     return check_sizes(f, mesh, e);
 }
 
@@ -86,33 +88,44 @@ static int place_of(const bone_films *f, const element_mesh *mesh, int64_t film,
     return 0;
 }
 
+/* Means over a film of its coordinates in its element, -1 to 1 there, and of their products. */
+static void moments_of(const bone_films *f, int64_t film, const double at[3], double m[CUT_MOMENTS])
+{
+    for (int a = 0; a < 3; a++)
+        m[a] = 2 * at[a] - 1;
+    const double products[CUT_MOMENTS - 3] = {m[0] * m[1], m[1] * m[2], m[2] * m[0], m[0] * m[1] * m[2]};
+    for (int i = 3; i < CUT_MOMENTS; i++)
+        m[i] = f->products ? (double)f->products[(CUT_MOMENTS - 3) * film + i - 3] : products[i - 3];
+}
+
 /* g of a corner. */
-static void slope_of(const bone_films *f, const double side[3], int64_t film, const double at[3], int corner,
+static void slope_of(const bone_films *f, const double side[3], int64_t film, const double m[CUT_MOMENTS], int corner,
                      double g[3])
 {
-    const double *n = f->normal + 3 * film;
-    double of[3], grad[3], along = 0;
+    const double x = 2 * lattice_vtk[corner][0] - 1, y = 2 * lattice_vtk[corner][1] - 1;
+    const double z = 2 * lattice_vtk[corner][2] - 1, *n = f->normal + 3 * film;
+    const double share =
+        (1 + x * m[0] + y * m[1] + z * m[2] + x * y * m[3] + y * z * m[4] + z * x * m[5] + x * y * z * m[CUT_XYZ]) / 8;
+    const double grad[3] = {x * (1 + y * m[1] + z * m[2] + y * z * m[4]) / (4 * side[0]),
+                            y * (1 + z * m[2] + x * m[0] + z * x * m[5]) / (4 * side[1]),
+                            z * (1 + x * m[0] + y * m[1] + x * y * m[3]) / (4 * side[2])};
+    const double along = grad[0] * n[0] + grad[1] * n[1] + grad[2] * n[2];
     for (int a = 0; a < 3; a++)
-        of[a] = lattice_vtk[corner][a] ? at[a] : 1 - at[a];
-    for (int a = 0; a < 3; a++) {
-        grad[a] = (lattice_vtk[corner][a] ? 1 : -1) / side[a] * of[(a + 1) % 3] * of[(a + 2) % 3];
-        along += grad[a] * n[a];
-    }
-    for (int a = 0; a < 3; a++)
-        g[a] = of[0] * of[1] * of[2] / f->depth[film] * n[a] + (grad[a] - along * n[a]) / 2;
+        g[a] = share / f->depth[film] * n[a] + (grad[a] - along * n[a]) / 2;
 }
 
 static int find_slopes(bone_films *f, const element_mesh *mesh, err *e)
 {
-    double at[3] = {0};
+    double at[3] = {0}, moments[CUT_MOMENTS];
     f->slope = mem_array(f->count, 24 * sizeof *f->slope, "the films", e);
     if (!f->slope)
         return -1;
     for (int64_t i = 0; i < f->count; i++) {
         if (place_of(f, mesh, i, at, e))
             return -1;
+        moments_of(f, i, at, moments);
         for (int c = 0; c < 8; c++)
-            slope_of(f, mesh->side, i, at, c, f->slope + 24 * i + 3 * (int64_t)c);
+            slope_of(f, mesh->side, i, moments, c, f->slope + 24 * i + 3 * (int64_t)c);
     }
     return 0;
 }
@@ -130,7 +143,7 @@ int bone_films_make(bone_films *to, const element_mesh *mesh, const model *m, er
 /* ---- what films leave */
 
 /* What films have of an element is never all of it, so that all nodes hang on something. */
-static const double most_of = .8;
+static const double most_of = .9;
 
 /* What taking goes by, borrowed. */
 typedef struct taking {

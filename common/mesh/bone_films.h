@@ -6,7 +6,9 @@
  *     F = R + w (x) n / d + (grad u - (R - I)) T / 2,   w = u(x) - u_bone(x),
  * as bone does not stretch: along the bone the film is strained by half of what the element is there. By the element's
  * shape functions F is linear in u_a,
- *     F = sum_a u_a (x) g_a + what the bone does,   g_a = N_a(x) n / d + T grad N_a(x) / 2.
+ *     F = sum_a u_a (x) g_a + what the bone does,   g_a = N_a n / d + T grad N_a / 2,
+ * with N_a and grad N_a not those at x, but means over the film, as bone.products gives them: so the force on the
+ * film of a constant stress is the one on what is left of the element, whichever way the bone cuts it.
  * Borrows the model; the caller owns the rest.
  */
 #ifndef SINEW_BONE_FILMS_H
@@ -18,6 +20,7 @@ typedef struct bone_films {
     int64_t count;                          /* 0: the model has none */
     const int32_t *element, *anchor, *body; /* body: NULL: none has one */
     const double *point, *depth, *area;     /* m; count x 3, count, count */
+    const float *products;                  /* count x 4; NULL: those of the point */
     double *normal, *slope;                 /* count x 3; count x 8 x 3: g, 1/m; owned */
 } bone_films;
 

@@ -121,6 +121,8 @@ typedef struct known {
     X("bone.depth", MODEL_F64, "m", "bone", 1, 1, 0, KNOWN_FROM, 0, 1e9, "attach",                                     \
       "how thick the film is, from the bone to the place; above 0")                                                    \
     X("bone.area", MODEL_F64, "m2", "bone", 1, 1, 0, KNOWN_FROM, 0, 1e9, "attach", "its area; above 0")                \
+    X("bone.products", MODEL_F32, "1", "bone", 4, 4, 0, KNOWN_FROM, -27, 27, "attach",                                 \
+      "means over the film of products of places in its element, -1 to 1 there: xy, yz, zx, xyz")                      \
     X("bone.body", MODEL_I32, "@body", "bone", 1, 1, 0, KNOWN_ANY, 0, 0, "attach",                                     \
       "rigid body that the bone moves with, -1 = none")                                                                \
     X("film.element", MODEL_I32, "@element", "film", 1, 1, KNOWN_EVERY, KNOWN_ANY, 0, 0, "attach",                     \

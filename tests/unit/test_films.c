@@ -55,6 +55,7 @@ static void add_films(model *m, const block *b)
     int32_t *element = block_array(m, "bone.element")->i32, *of = block_array(m, "film.element")->i32;
     double *point = block_array(m, "bone.point")->f64, *depth = block_array(m, "bone.depth")->f64;
     double *area = block_array(m, "bone.area")->f64;
+    float *products = block_array(m, "bone.products")->f32;
     float *n = block_array(m, "bone.normal")->f32, *share = block_array(m, "film.share")->f32;
     block_array(m, "bone.anchor");
     block_array(m, "film.moments");
@@ -67,6 +68,8 @@ static void add_films(model *m, const block *b)
         }
         if (!i)
             point[2] = -.2 * b->side[2];
+        for (int a = 0; a < 4; a++)
+            products[4 * i + a] = .03F * (float)((i + 3 * a) % 7) - .1F;
         depth[i] = .004;
         area[i] = 1e-4 + 2e-6 * i;
         share[i] = .1F + .05F * (float)(i % 9);
