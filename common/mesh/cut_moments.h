@@ -1,7 +1,7 @@
 /* The moments of elements that a surface cuts or a border parts, in a model. cut.element and cut.moments are of the
  * elements whose strain is its mean over what is enclosed of them (element_cut.h); other elements have theirs at the
  * centre. border.element, border.normal and border.moments are of the elements that are laminates of their two volumes
- * (element_laminate.h); other mixed elements have moduli between. Borrows the model.
+ * (element_laminate.h), also where a surface cuts them; other mixed elements have moduli between. Borrows the model.
  */
 #ifndef SINEW_CUT_MOMENTS_H
 #define SINEW_CUT_MOMENTS_H
@@ -41,8 +41,10 @@ int borders_of(borders *to, const model *m, err *e);
 /* Finds the row of an element; -1: it has none. */
 int64_t borders_at(const borders *of, int64_t element);
 
-/* LAMINATE_NUMBERS of a row, of boxes of these sides (m); share: of the second volume. A plane across the normal that
- * leaves the second volume its share gives the kink. */
-void borders_numbers(const borders *of, int64_t row, const double side[3], double share, double *to);
+/* LAMINATE_NUMBERS of a row, of boxes of these sides (m). moments: of the box, where it is cut, else NULL. fraction:
+ * what is enclosed of it; share: the second volume's of that. The kink is at a plane across the normal, beyond which
+ * the box has what one of the parts has of it: the second where that is beyond a plane, else all but the first. */
+void borders_numbers(const borders *of, int64_t row, const float *moments, const double side[3], double fraction,
+                     double share, double *to);
 
 #endif

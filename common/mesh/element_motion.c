@@ -19,6 +19,7 @@ int element_mesh_of(element_mesh *to, const model *m, err *e)
     if (to->is_lattice && (lattice_of(m, &l, e) || cut_moments_of(&to->cut, m, e) || borders_of(&to->borders, m, e)))
         return -1;
     memcpy(to->side, l.spacing, sizeof to->side);
+    to->fraction = model_find(m, "element.fraction") ? model_find(m, "element.fraction")->f32 : NULL;
     return 0;
 }
 
@@ -97,7 +98,8 @@ bool laminates_at(const element_mesh *mesh, const materials_map *map, hourglass_
                            other = material_numbers_of(&map->of_volume[map->mix[element]]),
                            between = material_mixed(&own, &other, share);
     double n[LAMINATE_NUMBERS];
-    borders_numbers(&mesh->borders, row, mesh->side, share, n);
+    borders_numbers(&mesh->borders, row, cut_moments_at(&mesh->cut, element), mesh->side,
+                    mesh->fraction ? (double)mesh->fraction[element] : 1, share, n);
     const element_laminate l = laminate_by(n, share, own.at_rest.bulk, other.at_rest.bulk);
     to->form = form_of_both(own.form, own.c, other.form, other.c, to->c[0], to->c[1]);
     for (int i = 0; i < form_moduli(to->form); i++) {

@@ -14,11 +14,12 @@ typedef struct element_mesh {
     const int32_t *node; /* elements x corners, VTK order */
     int corners;         /* 8 or 4 */
     int64_t elements;
-    const double *rest; /* nodes x 3, m */
-    bool is_lattice;    /* hexahedra, all boxes of `side` */
-    double side[3];     /* m */
-    cut_moments cut;    /* of boxes: whose gradient is its mean over what is enclosed */
-    borders borders;    /* of boxes that are laminates */
+    const double *rest;    /* nodes x 3, m */
+    bool is_lattice;       /* hexahedra, all boxes of `side` */
+    double side[3];        /* m */
+    cut_moments cut;       /* of boxes: whose gradient is its mean over what is enclosed */
+    borders borders;       /* of boxes that are laminates */
+    const float *fraction; /* elements: what is enclosed of them; or NULL */
 } element_mesh;
 
 typedef struct element_motion {

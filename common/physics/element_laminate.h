@@ -13,6 +13,10 @@
  * As dW/da = 0, forces are those of F_1, F_2 and m - a kappa with a kept: no derivative of a is in them. In series
  * across and side by side along: a laminate's own moduli, whatever the two laws are.
  *
+ * A surface may cut the box (element_cut.h): then s is the second part's share of what is tissue, V the volume of that,
+ * and what is said of the mean F is of F's mean over it. As the parts' mean is that F whatever a is, the box still
+ * passes the patch test of one stress; k at corners that are out of the tissue is as at the others.
+ *
  * a is found by at most LAMINATE_TURNS of Newton's, from 0 on, until the next would change it by less than
  * LAMINATE_ENOUGH of it, by the matrix
  *     s (1 - s) V ((1 - s) A_2 + s A_1) + hourglass,   A_il = d2W/dF_ij dF_lm N_j N_m,
@@ -41,8 +45,9 @@ typedef struct laminate_kink {
 
 typedef struct element_laminate {
     element_vector normal; /* N, at rest, of length 1, from the first part to the second */
-    element_cut second;    /* moments of the second part */
-    real share;            /* of it, above 0 and below 1 */
+    element_cut second;    /* moments of the second part, */
+    element_cut whole;     /* and of both together: 0 of a box that no surface cuts */
+    real share;            /* of the second in both, above 0 and below 1 */
     laminate_kink kink;
     real bulk[2]; /* of the parts: Pa */
 } element_laminate;
@@ -57,9 +62,10 @@ typedef struct laminate_state {
 
 ELEMENT_FUNCTION element_cut laminate_first(const element_laminate *l)
 {
-    const real k = -l->share / (1 - l->share);
-    const element_cut c = {k * l->second.x,  k * l->second.y,  k * l->second.z,
-                           k * l->second.xy, k * l->second.yz, k * l->second.zx};
+    const element_cut *a = &l->second, *b = &l->whole;
+    const real k = -l->share / (1 - l->share), w = 1 / (1 - l->share);
+    const element_cut c = {k * a->x + w * b->x,   k * a->y + w * b->y,   k * a->z + w * b->z,
+                           k * a->xy + w * b->xy, k * a->yz + w * b->yz, k * a->zx + w * b->zx};
     return c;
 }
 
@@ -165,7 +171,8 @@ ELEMENT_FUNCTION laminate_state laminate_of(form f, hourglass_kind kind, element
     const hourglass_modes m = element_hourglass_modes(x, y, z);
     const element_tensor h1 = element_cut_gradient(x, y, z, shape.slope, laminate_first(l)),
                          h2 = element_cut_gradient(x, y, z, shape.slope, l->second);
-    laminate_state to = {.h = element_gradient(x, y, z, shape.slope), .jump = {REAL_ZERO, REAL_ZERO, REAL_ZERO}};
+    laminate_state to = {.h = element_cut_gradient(x, y, z, shape.slope, l->whole),
+                         .jump = {REAL_ZERO, REAL_ZERO, REAL_ZERO}};
     const element_symmetric held = laminate_hourglass(kind, l, to.h, shape, hourglass);
     const real share = l->share, volume = 1 / shape.density, one = volume * (1 - share), other = volume * share;
     for (int turn = 0; turn <= LAMINATE_TURNS; turn++) {
@@ -200,7 +207,7 @@ ELEMENT_FUNCTION laminate_state laminate_held(form f, hourglass_kind kind, eleme
                                               const real *second, const element_laminate *l)
 {
     const int follows = element_follows(f, kind);
-    const element_tensor h = element_gradient(x, y, z, shape.slope);
+    const element_tensor h = element_cut_gradient(x, y, z, shape.slope, l->whole);
     const real slope = follows ? element_follow_numbers(f, h, law) : REAL_ZERO;
     const laminate_state to = laminate_of(f, kind, x, y, z, shape, law->hourglass, first, second, l);
     for (int i = 0; i < form_moduli(f); i++)
@@ -219,20 +226,25 @@ ELEMENT_FUNCTION element_field element_force_laminate(form f, hourglass_kind kin
 {
     const element_modes x = element_modes_of(u.x), y = element_modes_of(u.y), z = element_modes_of(u.z);
     laminate_state is = laminate_held(f, kind, x, y, z, shape, &law, first, second_law, l);
-    element_tensor p = element_sum(is.p1, is.p2);
+    const element_tensor mean = element_stress(f, is.h, law.c, fibre, which, second, which_second, sets, count),
+                         held = kind == HOURGLASS_PHYSICAL ? element_sum(mean, is.held.p) : mean;
     is.held.f = element_cut_pull(is.held.f, is.p1, shape.area, laminate_first(l));
     is.held.f = element_cut_pull(is.held.f, is.p2, shape.area, l->second);
-    p = element_sum(p, element_stress(f, is.h, law.c, fibre, which, second, which_second, sets, count));
-    return element_force_of(kind, p, &is.held, shape);
+    is.held.f = element_cut_pull(is.held.f, held, shape.area, l->whole);
+    return element_force_of(kind, element_sum(element_sum(is.p1, is.p2), mean), &is.held, shape);
 }
 
 #ifdef REAL_IS_DOUBLE
 /* n: LAMINATE_NUMBERS; bulk: of the parts, Pa. */
 ELEMENT_FUNCTION element_laminate laminate_by(const double *n, double share, double bulk, double other)
 {
-    const double *c = n + LAMINATE_SECOND, *k = n + LAMINATE_KINK;
-    const element_laminate l = {
-        {n[0], n[1], n[2]}, {c[0], c[1], c[2], c[3], c[4], c[5]}, share, {k[0], k[1], k[2], k[3]}, {bulk, other}};
+    const double *c = n + LAMINATE_SECOND, *w = n + LAMINATE_WHOLE, *k = n + LAMINATE_KINK;
+    const element_laminate l = {{n[0], n[1], n[2]},
+                                {c[0], c[1], c[2], c[3], c[4], c[5]},
+                                {w[0], w[1], w[2], w[3], w[4], w[5]},
+                                share,
+                                {k[0], k[1], k[2], k[3]},
+                                {bulk, other}};
     return l;
 }
 

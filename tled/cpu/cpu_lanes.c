@@ -390,10 +390,11 @@ static inline element_laminate laminate_at(const cpu_work *w, const rows_run *ru
     real n[LAMINATE_NUMBERS];
     for (int k = 0; k < LAMINATE_NUMBERS; k++)
         n[k] = load(w->border, ((int64_t)run->border * LAMINATE_NUMBERS + k) * LANES);
-    const real *c = n + LAMINATE_SECOND, *k = n + LAMINATE_KINK;
+    const real *c = n + LAMINATE_SECOND, *a = n + LAMINATE_WHOLE, *k = n + LAMINATE_KINK;
     const element_laminate l = {
         {n[0], n[1], n[2]},
         {c[0], c[1], c[2], c[3], c[4], c[5]},
+        {a[0], a[1], a[2], a[3], a[4], a[5]},
         load(w->mixture, run->cell),
         {k[0], k[1], k[2], k[3]},
         {by * (real_one)w->p->volume[run->volume].law.bulk, by * (real_one)w->p->volume[run->mix].law.bulk}};
@@ -403,7 +404,7 @@ static inline element_laminate laminate_at(const cpu_work *w, const rows_run *ru
 static __attribute__((noinline)) void laminate_forces(const cpu_work *w, const rows_run *run, element_shape shape)
 {
     const int which = muscle_of(w, w->fibre, run->volume), which_second = muscle_of(w, w->mixfibre, run->mix);
-    const real by = w->fraction ? load(w->fraction, run->cell) : REAL_ZERO + 1; /* less than 1 where films take some */
+    const real by = w->fraction ? load(w->fraction, run->cell) : REAL_ZERO + 1;
     const element_laminate l = laminate_at(w, run, by);
     const real own = by * (1 - l.share), other = by * l.share;
     element_law law, first, second;
@@ -414,7 +415,7 @@ static __attribute__((noinline)) void laminate_forces(const cpu_work *w, const r
     element_fibre fibre = fibre_of(w, w->fibre, run, run->volume, own, which);
     element_fibre along = fibre_of(w, w->mixfibre, run, run->mix, other, which_second);
     if (w->p->serial)
-        contract_both(w, run, &u, shape, false, &fibre, &along);
+        contract_both(w, run, &u, shape, w->cut && run->cut >= 0, &fibre, &along);
     const fibre_set sets[2] = {fibres_of(w, run->cell, run->volume, w->fibre, w->family, own),
                                fibres_of(w, run->cell, run->mix, w->mixfibre, w->mixfamily, other)};
     const element_field f =
@@ -490,10 +491,10 @@ static inline void layer_forces(const cpu_work *w, const rows_layer *l, element_
 {
     const bool fibred = w->p->fibres.of, serial = w->p->serial;
     for (const rows_run *run = w->r->run + l->run; run < w->r->run + l->run + l->runs; run++)
-        if (w->cut && run->cut >= 0)
-            cut_forces(w, run, shape);
-        else if (w->border && run->border >= 0)
+        if (w->border && run->border >= 0)
             laminate_forces(w, run, shape);
+        else if (w->cut && run->cut >= 0)
+            cut_forces(w, run, shape);
         else if ((fibred && is_fibred(w, run)) || (serial && (is_serial(w, run->volume) || is_serial(w, run->mix))))
             fibred_forces(w, run, shape);
         else if (run->mix >= 0)

@@ -142,7 +142,7 @@ static element_field pull_of(const tled_problem *p, int64_t element, const bodie
     const float *cut = tled_cut(p, element);
     const double *border = tled_border(p, element);
     if (border) {
-        const border_parts parts = border_parts_of(p, element, border);
+        const border_parts parts = border_parts_by(border_parts_of(p, element, border), p, share);
         return element_force_laminate(p->form, p->control.kind, u, box, parts.law, parts.c[0], parts.c[1], own, which,
                                       other, which_other, sets.of, sets.count, &parts.l);
     }

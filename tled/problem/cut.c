@@ -96,12 +96,9 @@ int border_borrow(tled_problem *p, const model *m, err *e)
                        "elements have values in place of their materials' and others are laminates "
                        "(border.element); expected one of these");
     p->border = of->count ? mem_array(of->count, LAMINATE_NUMBERS * sizeof *p->border, "the borders", e) : NULL;
-    for (int64_t i = 0; i < of->count; i++)
-        if (cut_moments_row(&p->cut, of->element[i]) >= 0)
-            return err_set(e, NULL, 0, "element %d is in cut.element and in border.element; expected it in one of them",
-                           (int)of->element[i]);
     for (int64_t i = 0; p->border && i < of->count; i++)
-        borders_numbers(of, i, p->side, tled_mixture(p, of->element[i]), p->border + LAMINATE_NUMBERS * i);
+        borders_numbers(of, i, tled_cut(p, of->element[i]), p->side, tled_fraction(p, of->element[i]),
+                        tled_mixture(p, of->element[i]), p->border + LAMINATE_NUMBERS * i);
     return of->count && !p->border ? -1 : 0;
 }
 
@@ -121,6 +118,21 @@ border_parts border_parts_of(const tled_problem *p, int64_t element, const doubl
     return to;
 }
 
+border_parts border_parts_by(border_parts parts, const tled_problem *p, double share)
+{
+    const int moduli = form_moduli(p->form);
+    for (int i = 0; i < moduli; i++) {
+        parts.c[0][i] *= share;
+        parts.c[1][i] *= share;
+        parts.law.c[i] *= share;
+    }
+    for (int i = 0; i < HOURGLASS_NUMBERS; i++)
+        parts.law.hourglass[i] *= share;
+    parts.l.bulk[0] *= share;
+    parts.l.bulk[1] *= share;
+    return parts;
+}
+
 laminate_state border_state(const tled_problem *p, border_parts *parts, element_modes x, element_modes y,
                             element_modes z, element_shape box)
 {
@@ -138,12 +150,16 @@ bool border_is_found(const laminate_state *is)
            length_of(is->left) <= .1 * length_of(is->jump) + 1e-3;
 }
 
-double border_square(const tled_problem *p, const border_parts *parts, const laminate_state *is, const double *rest,
-                     double density, const step_fibres *fibres, stability_twists t, double highest)
+double border_square(const tled_problem *p, int64_t element, const border_parts *parts, const laminate_state *is,
+                     const double *rest, double density, const step_fibres *fibres, stability_twists t, double highest)
 {
+    const float *moments = tled_cut(p, element);
     stability_laminate m;
+    if (moments)
+        t = cut_twists(p, element, moments, t);
     stability_laminate_matrices(p->form, is, &parts->l, parts->c[0], parts->c[1], rest, density, p->side, fibres->own,
-                                fibres->other, fibres->sets.of, fibres->sets.count, &m);
+                                fibres->other, fibres->sets.of, fibres->sets.count,
+                                moments ? cut_lighter_of(p, element) : 1, &m);
     const double bound = stability_laminate_bound(&m, t);
     return bound <= highest ? bound : stability_laminate_square(&m, t);
 }
@@ -159,5 +175,6 @@ double border_square_at_rest(const tled_problem *p, int64_t element, const doubl
     memcpy(none, law.c, sizeof none);
     memset(none, 0, (size_t)form_moduli(p->form) * sizeof *none);
     at_rest.own = at_rest.other = (element_fibre){.tension = 0};
-    return border_square(p, &parts, &rest, none, law.density, &at_rest, (stability_twists){law.twists, 0}, highest);
+    return border_square(p, element, &parts, &rest, none, law.density, &at_rest, (stability_twists){law.twists, 0},
+                         highest);
 }

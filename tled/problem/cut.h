@@ -50,11 +50,14 @@ typedef struct border_parts {
     element_law law;
 } border_parts;
 
-/* Makes p->borders and p->border. -1 with e filled. */
+/* Makes p->borders and p->border, of elements whose cuts are known. -1 with e filled. */
 int border_borrow(tled_problem *p, const model *m, err *e);
 
 /* numbers: tled_border's. */
 border_parts border_parts_of(const tled_problem *p, int64_t element, const double *numbers);
+
+/* Has them of a share of the element, by which forces go. */
+border_parts border_parts_by(border_parts parts, const tled_problem *p, double share);
 
 /* At given modes; parts' law becomes what is at the mean F, as of laminate_held. */
 laminate_state border_state(const tled_problem *p, border_parts *parts, element_modes x, element_modes y,
@@ -65,8 +68,8 @@ bool border_is_found(const laminate_state *is);
 
 /* No less than the square of the highest frequency; where that is below `highest`, perhaps much more. rest: the
  * coefficients at the mean F (parts' law and what it stiffens by); t: as of a whole element at the mean F. */
-double border_square(const tled_problem *p, const border_parts *parts, const laminate_state *is, const double *rest,
-                     double density, const step_fibres *fibres, stability_twists t, double highest);
+double border_square(const tled_problem *p, int64_t element, const border_parts *parts, const laminate_state *is,
+                     const double *rest, double density, const step_fibres *fibres, stability_twists t, double highest);
 
 /* Likewise at rest, without muscles. */
 double border_square_at_rest(const tled_problem *p, int64_t element, const double *numbers, const step_fibres *fibres,

@@ -95,8 +95,8 @@ static int check_muscles(const films *f, const tled_problem *p, err *e)
 int films_share(tled_problem *p, const model *m, err *e)
 {
     const element_mesh mesh = {
-        p->element_node, 8,         p->elements, p->position, !p->conforming, {p->side[0], p->side[1], p->side[2]},
-        p->cut,          p->borders};
+        p->element_node, 8,          p->elements, p->position, !p->conforming, {p->side[0], p->side[1], p->side[2]},
+        p->cut,          p->borders, p->fraction};
     bone_films rows;
     if (bone_films_make(&rows, &mesh, m, e)) {
         bone_films_free(&rows);

@@ -59,7 +59,7 @@ static void add_border(const monitor *w, int64_t i, const deformed *d, double sl
     const stability_twists t =
         stability_twists_of(w->p->control.kind, d->law.twists, slope, d->h, &d->laminate.modes, d->stiffening);
     const double square =
-        border_square(w->p, &d->parts, &d->laminate, d->law.c, d->law.density, fibres, t, part->sum.frequency);
+        border_square(w->p, i, &d->parts, &d->laminate, d->law.c, d->law.density, fibres, t, part->sum.frequency);
     if (!(square <= part->sum.frequency))
         take_frequency(part, i, w->raise * square);
 }
