@@ -28,6 +28,7 @@ typedef struct climb_count {
     int64_t reached; /* of them, those taken at the level below (on level 0 all) */
     int64_t kept;    /* of them, those that it has in the end */
     int64_t mixed;   /* by shares (shares.h): voxels that it is the second volume in */
+    int64_t divided; /* likewise: voxels in which its samples count as those of two others */
 } climb_count;
 
 typedef struct climb {

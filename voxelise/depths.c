@@ -9,7 +9,7 @@
 #include <string.h>
 
 /* Cells along a side of what one thread takes at a time, and at least of a bin. */
-enum { UNIT = 32, LEAST_BIN = 16, UNWANTED = 255 };
+enum { UNIT = 32, LEAST_BIN = 16 };
 
 /* Corners within radius of the middle. */
 typedef struct ball {
@@ -20,7 +20,7 @@ typedef struct box {
     int64_t low[3], high[3]; /* cells, low <= i < high */
 } box;
 
-typedef struct work {
+struct depths {
     uint8_t *step;
     const double *depth;
     int64_t depths;
@@ -36,11 +36,17 @@ typedef struct work {
     int64_t *start; /* bins + 1 */
     uint32_t *triangle;
     atomic_bool failed;
-} work;
+    int samples; /* of a voxel, along a side; 0: cells are voxels, of which all of a centre's step are */
+    double spread[DEPTHS_SAMPLES * DEPTHS_SAMPLES];
+    double blur; /* how far from its centre's depth a sample's may be taken */
+};
 
+typedef struct depths work;
+
+/* No centre deeper than that is above the last depth. */
 static double deepest(const work *w)
 {
-    return w->depth[w->depths - 1];
+    return w->depth[w->depths - 1] + w->blur;
 }
 
 /* ---- triangles into bins: those that may be as near as the deepest to some centre in it */
@@ -176,7 +182,7 @@ static bool any_wanted(const search *s, const box *b)
     for (int64_t k = b->low[2]; k < b->high[2]; k++)
         for (int64_t j = b->low[1]; j < b->high[1]; j++)
             for (int64_t i = b->low[0]; i < b->high[0]; i++)
-                if (*step_at(s, i, j, k) != UNWANTED)
+                if (*step_at(s, i, j, k) != DEPTHS_UNWANTED)
                     return true;
     return false;
 }
@@ -186,7 +192,7 @@ static void fill_box(const search *s, const box *b, uint8_t step)
     for (int64_t k = b->low[2]; k < b->high[2]; k++)
         for (int64_t j = b->low[1]; j < b->high[1]; j++)
             for (int64_t i = b->low[0]; i < b->high[0]; i++)
-                if (*step_at(s, i, j, k) != UNWANTED)
+                if (*step_at(s, i, j, k) != DEPTHS_UNWANTED)
                     *step_at(s, i, j, k) = step;
 }
 
@@ -244,6 +250,66 @@ static uint8_t find_step(const search *s, const ball *c, double distance, int64_
     return step;
 }
 
+/* Numbers from 0 to 1 for the samples of a voxel: any layer of them, across any axis, has each of N^2 once, and next to
+ * each other they differ much, as multiples of powers of the inverse root of x^3 = x + 1 do (Roberts's sequence). */
+static void make_spread(work *w)
+{
+    const int n = w->samples, all = n * n;
+    double of[DEPTHS_SAMPLES * DEPTHS_SAMPLES];
+    for (int i = 0; i < all; i++) {
+        const int u = i % n, v = i / n;
+        const double sum = .7548776662466927 * u + .5698402909980532 * v;
+        of[i] = sum - floor(sum);
+    }
+    for (int i = 0; i < all; i++) {
+        int below = 0;
+        for (int k = 0; k < all; k++)
+            below += of[k] < of[i] || (k < i && of[k] == of[i]);
+        w->spread[i] = (below + .5) / all;
+    }
+}
+
+static double spread_at(const work *w, const int64_t *cell)
+{
+    const int64_t n = w->samples;
+    int64_t in[3];
+    for (int a = 0; a < 3; a++)
+        in[a] = (cell[a] % n + n) % n;
+    return w->spread[(in[1] + in[2]) % n * n + (in[0] + in[2]) % n];
+}
+
+/* The step of one sample. Samples begin at the surface as shares of voxels have it, which is off by up to half of
+ * one: so the first from there reaches to the depth of a sample's width, the next to that of two. What lies between two
+ * depths of steps in this is of both in parts: of such samples so many are of either. So a layer that is thinner than a
+ * sample, or ends within one, has its own volume. */
+static uint8_t find_sample(const search *s, const box *b, const ball *c, int64_t first, int64_t from, int64_t to)
+{
+    const work *w = s->w;
+    static const double by[3] = {1e-7, 1e-9, 1e-11};
+    double p[3], nearest[3], width = 0, nudge = 0;
+    const double *corner = &w->s->corner[9 * (int64_t)s->triangle[first]];
+    double distance = sqrt(closest_triangle(corner, corner + 3, corner + 6, c->middle, nearest));
+    for (int64_t n = from; n < to; n++) {
+        if (s->least[n] > distance + slack_of(c, distance))
+            continue;
+        corner = &w->s->corner[9 * (int64_t)s->triangle[n]];
+        const double other = sqrt(closest_triangle(corner, corner + 3, corner + 6, c->middle, p));
+        if (other < distance) {
+            distance = other;
+            memcpy(nearest, p, sizeof nearest);
+        }
+    }
+    for (int a = 0; a < 3; a++) {
+        const double along = (c->middle[a] - nearest[a]) / distance;
+        width += w->g->spacing[a] * fabs(along);
+        nudge += along * by[a];
+    }
+    if (!(width > 0)) /* it lies on the surface */
+        return step_of(w, w->blur * spread_at(w, b->low) / 3);
+    distance = fmax(0, distance + width * nudge); /* as centres on the surface are taken for inside or not */
+    return step_of(w, width * (floor(distance / width) + spread_at(w, b->low)));
+}
+
 /* The triangles that may be nearer than others to some centre in the box follow those of the box around it. */
 static int keep_near(search *s, double most, int64_t from, int64_t to, int64_t *past, err *e)
 {
@@ -283,11 +349,11 @@ static int look(search *s, const box *b, int64_t from, int64_t to, err *e) // NO
     int64_t first = find_first(s, &c, from, to);
     double near = distance_of(s, &c, first), slack = slack_of(&c, near);
     if (single) {
-        fill_box(s, b, find_step(s, &c, near, from, to));
+        fill_box(s, b, w->samples ? find_sample(s, b, &c, first, from, to) : find_step(s, &c, near, from, to));
         return 0;
     }
-    uint8_t step = step_of(w, near + c.radius + slack);
-    if (step == step_of(w, s->least[first] - c.radius - slack)) {
+    uint8_t step = step_of(w, near + c.radius + slack + w->blur);
+    if (step == step_of(w, s->least[first] - c.radius - slack - w->blur)) {
         fill_box(s, b, step);
         return 0;
     }
@@ -344,7 +410,7 @@ static int do_row(search *s, err *e)
     s->step = mem_array(cells, 1, "depths", e);
     if (!s->step)
         return -1;
-    memset(s->step, UNWANTED, (size_t)cells);
+    memset(s->step, DEPTHS_UNWANTED, (size_t)cells);
     each_run(s, false);
     for (int64_t i = s->row.low[0]; i < s->row.high[0]; i += unit) {
         box b = s->row;
@@ -396,24 +462,89 @@ static bool find_all(work *w)
     return b->low[0] < b->high[0];
 }
 
+static int make_bins(work *w, err *e)
+{
+    if (w->s->triangles > UINT32_MAX)
+        return err_set(e, NULL, 0, "%lld triangles; at most %u are possible", (long long)w->s->triangles, UINT32_MAX);
+    choose_bins(w);
+    return fill_bins(w, e);
+}
+
+static void free_bins(work *w)
+{
+    free(w->ball);
+    free(w->start);
+    free(w->triangle);
+}
+
 // NOLINTNEXTLINE(readability-non-const-parameter): it is written to
-int depths_find(uint8_t *step, const double *depth, int64_t depths, const voxels *x, const voxels_layers *layer,
+int depths_find(uint8_t *step, const double *depth, int64_t count, const voxels *x, const voxels_layers *layer,
                 int32_t volumes, const depths_surface *s, const grid *g, pool *threads, err *e)
 {
     work w = {
-        .step = step, .depth = depth, .depths = depths, .x = x, .layer = layer, .volumes = volumes, .s = s, .g = g};
-    if (s->triangles > UINT32_MAX)
-        return err_set(e, NULL, 0, "%lld triangles; at most %u are possible", (long long)s->triangles, UINT32_MAX);
+        .step = step, .depth = depth, .depths = count, .x = x, .layer = layer, .volumes = volumes, .s = s, .g = g};
     if (!find_all(&w))
         return 0;
-    choose_bins(&w);
-    int status = fill_bins(&w, e);
+    int status = make_bins(&w, e);
     if (!status) {
         pool_run(threads, w.units[1] * w.units[2], 1, do_rows, &w);
         status = atomic_load(&w.failed) ? err_memory(e, "depths") : 0;
     }
-    free(w.ball);
-    free(w.start);
-    free(w.triangle);
+    free_bins(&w);
+    return status;
+}
+
+/* ---- some cells at a time */
+
+depths *depths_create(const double *depth, int64_t count, const depths_surface *s, const grid *g, int samples, err *e)
+{
+    work *w = mem_array(1, sizeof *w, "depths", e);
+    if (!w)
+        return NULL;
+    *w = (work){.depth = depth, .depths = count, .s = s, .g = g, .samples = samples};
+    for (int a = 0; a < 3; a++) {
+        w->all.low[a] = g->low[a], w->all.high[a] = g->high[a];
+        w->blur += g->spacing[a];
+    }
+    make_spread(w);
+    if (!make_bins(w, e))
+        return w;
+    depths_destroy(w);
+    return NULL;
+}
+
+void depths_destroy(depths *d)
+{
+    if (d)
+        free_bins(d);
+    free(d);
+}
+
+/* Where a box that begins at `from` ends along an axis: with it, its bin, or a unit further. */
+static int64_t end_of(const work *w, int a, int64_t from, int64_t high)
+{
+    const int64_t of_bin = w->all.low[a] + ((from - w->all.low[a]) / w->bin + 1) * w->bin, end = from + UNIT;
+    const int64_t nearer = of_bin < end ? of_bin : end;
+    return high < nearer ? high : nearer;
+}
+
+// NOLINTNEXTLINE(readability-non-const-parameter): it is written to
+int depths_look(const depths *d, const int64_t low[3], const int64_t high[3], uint8_t *step, err *e)
+{
+    search s = {.w = d, .row = {{low[0], low[1], low[2]}, {high[0], high[1], high[2]}}, .step = step};
+    box b;
+    int status = 0;
+    for (b.low[2] = low[2]; b.low[2] < high[2]; b.low[2] = b.high[2]) {
+        b.high[2] = end_of(d, 2, b.low[2], high[2]);
+        for (b.low[1] = low[1]; b.low[1] < high[1]; b.low[1] = b.high[1]) {
+            b.high[1] = end_of(d, 1, b.low[1], high[1]);
+            for (b.low[0] = low[0]; b.low[0] < high[0] && !status; b.low[0] = b.high[0]) {
+                b.high[0] = end_of(d, 0, b.low[0], high[0]);
+                status = look_unit(&s, &b, e);
+            }
+        }
+    }
+    free(s.triangle);
+    free(s.least);
     return status;
 }

@@ -4,9 +4,9 @@
 #include "base/mem.h"
 #include "model/materials.h"
 #include "surface/triangulate.h"
-#include "voxelise/depths.h"
 #include "voxelise/surfaces/outward.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
@@ -182,24 +182,6 @@ static int32_t moved(const work *w, int32_t volume)
     return volume < w->lowest ? volume : volume + (int32_t)w->l->layers;
 }
 
-/* The second volumes, as the first: one of level 0 is the layer that the voxel's centre is in, and no second where that
- * is the first's too. x: of the runs that are cut. */
-static void move_mixes(const work *w, voxels *x)
-{
-    for (int64_t r = 0, i = 0; x->mix && r < x->runs; r++)
-        for (int32_t at = x->run[r].from; at < x->run[r].to; at++, i++) {
-            int32_t was = x->mix[i];
-            bool in_layer = w->layer[i] && was >= 0 && was < w->lowest;
-            if (in_layer)
-                x->mix[i] = w->lowest + w->layer[i] - 1;
-            else
-                x->mix[i] = was < 0 ? -1 : moved(w, was);
-            if (x->mix[i] == x->run[r].volume)
-                x->mix[i] = -1;
-            x->mixture[i] = x->mix[i] < 0 ? 0 : x->mixture[i];
-        }
-}
-
 /* The runs again, cut where layers change. */
 static int cut_runs(const work *w, voxels *x, err *e)
 {
@@ -232,13 +214,10 @@ static int move_counts(const work *w, voxels *x, int32_t all, err *e)
         return -1;
     for (int32_t v = 0; v < all; v++) {
         count[moved(w, v)] = x->count[v];
-        count[moved(w, v)].kept = count[moved(w, v)].mixed = 0;
+        count[moved(w, v)].kept = 0;
     }
     for (int64_t r = 0; r < x->runs; r++)
         count[x->run[r].volume].kept += x->run[r].to - x->run[r].from;
-    for (int64_t i = 0; x->mix && i < x->elements; i++)
-        if (x->mix[i] >= 0)
-            count[x->mix[i]].mixed++;
     for (int64_t i = w->lowest; i < w->lowest + w->l->layers; i++)
         count[i].inside = count[i].reached = count[i].kept;
     free(x->count);
@@ -279,9 +258,7 @@ static int find_layers(const work *w, const voxels *x, const skin *s, const grid
         depth[i] = w->l->layer[i].depth;
     if (voxels_find_layers(x, &at, e))
         return -1;
-    /* A muscle's voxel may have a share of level 0. */
-    int32_t below = x->mix ? INT32_MAX : w->lowest;
-    int status = depths_find(w->layer, depth, w->l->layers, x, &at, below, &surface, g, threads, e);
+    int status = depths_find(w->layer, depth, w->l->layers, x, &at, w->lowest, &surface, g, threads, e);
     voxels_layers_free(&at);
     return status;
 }
@@ -290,15 +267,63 @@ int layers_apply(const layers *l, voxels *x, volumes *plan, const obj *o, const 
 {
     skin s = {0};
     work w = {.l = l, .lowest = lowest_volumes(plan)};
+    if (x->fraction) /* by shares: voxels have them */
+        return add_volumes(&w, plan, e);
     w.layer = mem_array(x->elements, sizeof *w.layer, "layers", e);
     int status = -1;
-    if (w.layer && !make_skin(&s, plan, o, g, e) && !find_layers(&w, x, &s, g, threads, e) && !cut_runs(&w, x, e)) {
-        move_mixes(&w, x);
+    if (w.layer && !make_skin(&s, plan, o, g, e) && !find_layers(&w, x, &s, g, threads, e) && !cut_runs(&w, x, e))
         status = move_counts(&w, x, plan->volumes, e) || add_volumes(&w, plan, e) ? -1 : 0;
-    }
     free_skin(&s);
     free(w.layer);
     return status;
+}
+
+/* ---- by shares */
+
+/* What volumes are of level 0, and layers, at rest in shear; nan of others. */
+static double *find_moduli(const layers *l, const volumes *plan, const model *m, err *e)
+{
+    const int32_t lowest = lowest_volumes(plan), all = plan->volumes + (int32_t)l->layers;
+    double *to = mem_array(all, sizeof *to, "volumes", e);
+    for (int32_t v = 0; to && v < all; v++) {
+        const int64_t layer = v - lowest;
+        material of;
+        to[v] = NAN;
+        if (layer >= l->layers)
+            continue;
+        if (materials_of(m, layer < 0 ? plan->volume[v].material : l->layer[layer].material, &of, e)) {
+            free(to);
+            return NULL;
+        }
+        to[v] = layer < 0 && plan->volume[v].muscle ? (double)NAN : material_mu(&of);
+    }
+    return to;
+}
+
+int layers_sample(layers_samples *to, const layers *l, const volumes *plan, const model *m, const obj *o, const grid *g,
+                  int samples, err *e)
+{
+    skin s = {0};
+    const int made = make_skin(&s, plan, o, g, e);
+    *to = (layers_samples){.corner = s.corner, .surface = {s.corner, s.triangles}};
+    free(s.cut);
+    for (int64_t i = 0; i < l->layers; i++)
+        to->depth[i] = l->layer[i].depth;
+    to->modulus = made ? NULL : find_moduli(l, plan, m, e);
+    to->made = to->modulus ? depths_create(to->depth, l->layers, &to->surface, g, samples, e) : NULL;
+    to->strata = (voxels_strata){to->made, lowest_volumes(plan), (int32_t)l->layers};
+    if (to->made)
+        return 0;
+    layers_samples_free(to);
+    return -1;
+}
+
+void layers_samples_free(layers_samples *s)
+{
+    depths_destroy(s->made);
+    free(s->corner);
+    free(s->modulus);
+    *s = (layers_samples){0};
 }
 
 int64_t layers_at(const layers *l, const volumes *plan, int32_t volume)

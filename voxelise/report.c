@@ -281,6 +281,33 @@ void report_layer(notes *n, const layers *l, int64_t layer, int32_t volume, cons
               which, thickness, name, side, name, what, thickness, name);
 }
 
+void report_layer_share(notes *n, const layers *l, int64_t layer, const climb_count *count, bool laminates,
+                        int64_t samples, const grid *g, num_unit unit)
+{
+    const double thickness = layers_thickness(l, layer), side = grid_longest(g);
+    const char *name = num_unit_name(unit), *which = l->layer[layer].name;
+    char why[200] = "";
+    if (!count->inside)
+        snprintf(why, sizeof why, "no sample of the voxels is in it, so it has no element");
+    else if (!laminates)
+        snprintf(
+            why, sizeof why,
+            "its elements have moduli between those of what they are mixed of, so it is too soft along itself, which "
+            "--mixed laminate mends");
+    else if (thickness < .5 * side / (double)samples)
+        snprintf(why, sizeof why, "it is less than half as thick as samples of voxels are apart, so it is too soft");
+    else if (count->divided)
+        snprintf(
+            why, sizeof why,
+            "%lld elements of three layers and more are laminates of the stiffest and the softest, and as stiff along "
+            "layers and in bending as with it",
+            (long long)count->divided);
+    if (*why)
+        notes_add(n,
+                  "layer %s is %.4g %s thick, less than a voxel of %.4g %s: %s; voxels of at most %.4g %s resolve it",
+                  which, thickness, name, side, name, why, thickness, name);
+}
+
 static const char *plural_of(int64_t count)
 {
     return count == 1 ? "" : "s";

@@ -48,9 +48,14 @@ int report_ask_for_unit(const obj *o, err *e);
 /* Notes gaps that elements fill. least: of a voxel, the share from which on it is an element; NAN: by centres. */
 void report_gaps(notes *n, const gaps *found, const grid *g, double least, num_unit unit);
 
-/* Notes a layer that is thinner than a voxel: the volume of that number. */
+/* Notes a layer that is thinner than a voxel, by centres: the volume of that number. */
 void report_layer(notes *n, const layers *l, int64_t layer, int32_t volume, const voxels *x, const grid *g,
                   num_unit unit);
+
+/* Likewise by shares: where its elements are not right, or nothing. count: of its volume; laminates: with these;
+ * samples: of a voxel, along a side. */
+void report_layer_share(notes *n, const layers *l, int64_t layer, const climb_count *count, bool laminates,
+                        int64_t samples, const grid *g, num_unit unit);
 
 /* Says how many nodes and elements slits have added; nothing where they have added none. */
 void report_slits(const tool *t, const slits *s);

@@ -108,22 +108,33 @@ void moments_add_sample(moments_sums *s, int samples, int i, int j, int k)
         s->of[n] += of[n];
 }
 
-int moments_list_add(moments_list *to, int64_t element, const moments_sums *s, int samples, err *e)
+/* Adds means over what so many samples are, from sums, and its faces. */
+static int put_moments(moments_list *to, int64_t element, double count, const double of[CUT_MOMENTS],
+                       const double faces[3], int samples, err *e)
 {
-    static const int factors[CUT_MOMENTS] = {1, 1, 1, 2, 2, 2, 3};
-    const int64_t n = samples;
-    if (s->count == n * n * n)
-        return 0;
+    const double n = samples, factor[CUT_MOMENTS] = {n, n, n, n * n, n * n, n * n, n * n * n};
     if (mem_grow(&to->voxel, &to->capacity, to->count + 1, sizeof *to->voxel, "moments of voxels", e))
         return -1;
     moments_voxel *v = &to->voxel[to->count++];
     v->element = element;
     for (int i = 0; i < CUT_MOMENTS; i++)
-        v->of[i] =
-            (float)((double)s->of[i] / (double)(s->count * n * (factors[i] > 1 ? n : 1) * (factors[i] > 2 ? n : 1)));
+        v->of[i] = (float)(of[i] / (count * factor[i]));
     for (int a = 0; a < 3; a++)
-        v->faces[a] = (float)((double)s->faces[a] / (double)(n * n));
+        v->faces[a] = (float)(faces[a] / (n * n));
     return 0;
+}
+
+int moments_list_add(moments_list *to, int64_t element, const moments_sums *s, int samples, err *e)
+{
+    const int64_t n = samples;
+    double of[CUT_MOMENTS], faces[3];
+    if (s->count == n * n * n)
+        return 0;
+    for (int i = 0; i < CUT_MOMENTS; i++)
+        of[i] = (double)s->of[i];
+    for (int a = 0; a < 3; a++)
+        faces[a] = (double)s->faces[a];
+    return put_moments(to, element, (double)s->count, of, faces, samples, e);
 }
 
 int moments_list_join(moments_list *to, const moments_list *from, int64_t element, err *e)
@@ -268,9 +279,12 @@ static int64_t total(const shares *s, int64_t i)
     return sum;
 }
 
-/* Whether a part of a voxel is what lies beyond a plane: by how far its middle is from the voxel's across its border,
- * which of half a voxel is half of a side; of a band through the middle, or two corners, it is next to nothing. */
-static bool is_beyond_plane(const moments_sums *s, int samples)
+/* ---- borders */
+
+/* Whether a part of a voxel is what lies beyond a plane, from 1 on: by how far its middle is from the voxel's across
+ * its border, which of half a voxel is half of a side; of a band through the middle, or two corners, it is next to
+ * nothing. */
+static double beyond_plane(const moments_sums *s, int samples)
 {
     const double n = samples, share = (double)s->count / (n * n * n);
     double length = 0, way = 0;
@@ -278,36 +292,198 @@ static bool is_beyond_plane(const moments_sums *s, int samples)
         length += (double)(s->faces[a] * s->faces[a]);
         way += (double)(s->faces[a] * s->of[a]) / (n * (double)s->count);
     }
-    return way > .6 * (1 - share) * sqrt(length) && length > 0;
+    return length > 0 ? way / (.6 * (1 - share) * sqrt(length)) : 0;
 }
 
-/* Of a voxel that two volumes fill. */
-static int add_border(const shares *s, int64_t i, int64_t second, int64_t samples, shares_list *list, err *e)
+/* The two volumes that a voxel is mixed of, as slots; second -1: one alone. */
+typedef struct pair {
+    int64_t first, second;
+    double mixture;         /* the second's share */
+    int64_t among;          /* beside a muscle: the slot whose samples those of all layers count as; else -1 */
+    bool divided;           /* samples of others are divided between the two by moduli */
+    double modulus, across; /* then: the first's, and what the second's is more */
+} pair;
+
+static int32_t samples_of(const shares *s, int64_t slot, int64_t i)
 {
-    const moments_sums sums = moments_at(&s->part[second], i, samples);
-    if (!is_beyond_plane(&sums, s->rule.samples))
+    return s->sum[slot * 2 * (s->cells + 1) + i];
+}
+
+/* How deep a volume's samples are among others of a voxel: those of layers by their numbers, those of level 0 below
+ * all; -1: of neither. */
+static int32_t depth_of(const shares *s, int64_t slot)
+{
+    const int32_t volume = s->volume[slot];
+    if (!s->rule.modulus || isnan(s->rule.modulus[volume]))
+        return -1;
+    return volume < s->rule.lowest ? s->rule.layers : volume - s->rule.lowest;
+}
+
+/* The deepest of a voxel's volumes; -1: some is neither a layer nor below, or two are below. */
+static int64_t deepest(const shares *s, int64_t i)
+{
+    int64_t best = -1;
+    for (int64_t n = 0; n < s->slots; n++) {
+        if (!samples_of(s, n, i))
+            continue;
+        if (depth_of(s, n) < 0 || (best >= 0 && depth_of(s, n) == depth_of(s, best)))
+            return -1;
+        best = best < 0 || depth_of(s, n) > depth_of(s, best) ? n : best;
+    }
+    return best;
+}
+
+/* The stiffest slot of a voxel (sign 1), or the softest (-1); of equal ones the first volume's. */
+static int64_t extreme(const shares *s, int64_t i, double sign)
+{
+    int64_t best = -1;
+    for (int64_t n = 0; n < s->slots; n++) {
+        if (!samples_of(s, n, i))
+            continue;
+        const double more = best < 0 ? 1 : sign * (s->rule.modulus[s->volume[n]] - s->rule.modulus[s->volume[best]]);
+        if (more > 0 || (more == 0 && s->volume[n] < s->volume[best]))
+            best = n;
+    }
+    return best;
+}
+
+/* What part of a slot's samples is the second's. */
+static double part_of_second(const shares *s, const pair *p, int64_t slot)
+{
+    if (p->divided)
+        return (s->rule.modulus[s->volume[slot]] - p->modulus) / p->across;
+    return slot == p->second || (p->among >= 0 && p->among == p->second && depth_of(s, slot) >= 0);
+}
+
+/* Of three layers and more. False: the stiffest and the softest are alike. */
+static bool divide(const shares *s, int64_t i, int64_t samples, pair *p)
+{
+    const int64_t stiff = extreme(s, i, 1), soft = extreme(s, i, -1);
+    const double high = s->rule.modulus[s->volume[stiff]], low = s->rule.modulus[s->volume[soft]];
+    double sum = 0;
+    if (!(high > low))
+        return false;
+    *p = (pair){soft, stiff, 0, -1, true, low, high - low};
+    for (int64_t n = 0; n < s->slots; n++)
+        sum += samples_of(s, n, i) ? samples_of(s, n, i) * part_of_second(s, p, n) : 0;
+    p->mixture = sum / (double)samples;
+    if (p->mixture > .5 || (p->mixture == .5 && s->volume[stiff] < s->volume[soft]))
+        *p = (pair){stiff, soft, 1 - p->mixture, -1, true, high, low - high};
+    return true;
+}
+
+/* Where something that is no layer lies among layers, as a muscle: that and the largest layer, as which all count, or
+ * what is below them. False: there are none of the one or the other. */
+static bool gather(const shares *s, int64_t i, pair *p)
+{
+    int64_t other = -1, layer = -1;
+    double count = 0;
+    for (int64_t n = 0; n < s->slots; n++) {
+        const int32_t samples = samples_of(s, n, i);
+        int64_t *best = depth_of(s, n) < 0 ? &other : &layer;
+        count += depth_of(s, n) < 0 ? 0 : samples;
+        if (samples && (*best < 0 || samples > samples_of(s, *best, i) ||
+                        (samples == samples_of(s, *best, i) && s->volume[n] < s->volume[*best])))
+            *best = n;
+    }
+    if (!s->rule.modulus || other < 0 || layer < 0)
+        return false;
+    const double own = samples_of(s, other, i);
+    *p = own > count ? (pair){.first = other, .second = layer, .mixture = count / (own + count)}
+                     : (pair){.first = layer, .second = other, .mixture = own / (own + count)};
+    p->among = layer;
+    return true;
+}
+
+static pair find_pair(const shares *s, int64_t i, int64_t samples)
+{
+    pair p = {.first = largest(s, i, -1), .among = -1}, better;
+    p.second = largest(s, i, p.first);
+    if (p.second < 0)
+        return p;
+    if (gather(s, i, &better))
+        return better;
+    const double own = samples_of(s, p.first, i), other = samples_of(s, p.second, i);
+    p.mixture = other / (own + other);
+    if (s->rule.borders && own + other < (double)samples && deepest(s, i) >= 0 && divide(s, i, samples, &better))
+        return better;
+    return p;
+}
+
+/* Whether all of a voxel's samples are of the two. */
+static bool has_all(const shares *s, int64_t i, const pair *p)
+{
+    for (int64_t n = 0; n < s->slots; n++)
+        if (samples_of(s, n, i) && !p->divided && n != p->first && n != p->second &&
+            (p->among < 0 || depth_of(s, n) < 0))
+            return false;
+    return true;
+}
+
+/* The part that its border alone bounds, within the voxel: what lies among layers; the deeper one of these; else, where
+ * the outer surface is in the voxel too, the one that is beyond a plane. */
+static int64_t inner_part(const shares *s, int64_t i, const pair *p, bool whole)
+{
+    const int64_t deep = deepest(s, i);
+    if (p->among >= 0)
+        return p->among == p->first ? p->second : p->first;
+    if (deep >= 0 || whole)
+        return deep >= 0 ? deep : p->second;
+    const moments_sums first = moments_at(&s->part[p->first], i, samples_of(s, p->first, i)),
+                       second = moments_at(&s->part[p->second], i, samples_of(s, p->second, i));
+    return beyond_plane(&first, s->rule.samples) > beyond_plane(&second, s->rule.samples) ? p->first : p->second;
+}
+
+/* Of a voxel of two volumes. The normal points to the second: of layers, as the inner part lies beside its border. */
+static int add_border(const shares *s, int64_t i, const pair *p, int64_t samples, shares_list *list, err *e)
+{
+    const bool whole = (double)samples == pow(s->rule.samples, 3);
+    if ((!whole && !s->rule.moments) || !has_all(s, i, p))
         return 0;
-    return moments_list_add(&list->border, list->count - 1, &sums, s->rule.samples, e);
+    const int64_t inner = inner_part(s, i, p, whole);
+    const moments_sums beyond = moments_at(&s->part[inner], i, samples_of(s, inner, i));
+    const bool to_second = p->divided ? depth_of(s, p->second) > depth_of(s, p->first) : inner == p->second;
+    double count = 0, of[CUT_MOMENTS] = {0}, faces[3];
+    if (!(beyond_plane(&beyond, s->rule.samples) > 1))
+        return 0;
+    for (int64_t n = 0; n < s->slots; n++) {
+        const double part = samples_of(s, n, i) ? part_of_second(s, p, n) : 0;
+        if (part == 0)
+            continue;
+        const moments_sums sums = moments_at(&s->part[n], i, samples_of(s, n, i));
+        count += part * (double)sums.count;
+        for (int k = 0; k < CUT_MOMENTS; k++)
+            of[k] += part * (double)sums.of[k];
+    }
+    for (int a = 0; a < 3; a++)
+        faces[a] = to_second ? (double)beyond.faces[a] : -(double)beyond.faces[a];
+    return put_moments(&list->border, list->count - 1, count, of, faces, s->rule.samples, e);
+}
+
+/* ---- voxels */
+
+/* Volumes whose samples a voxel has as those of two others. */
+static void count_divided(const shares *s, int64_t i, const pair *p, climb_count *kept)
+{
+    for (int64_t n = 0; n < s->slots; n++)
+        kept[s->volume[n]].divided += p->divided && samples_of(s, n, i) && n != p->first && n != p->second;
 }
 
 /* Voxel i of a row, in which so many samples are. */
-static int add_share(shares *s, int64_t i, climb_run at, int64_t samples, shares_list *list, climb_count *kept, err *e)
+static int add_share(shares *s, int64_t i, const pair *p, int64_t samples, shares_list *list, climb_count *kept, err *e)
 {
-    int64_t size = 2 * (s->cells + 1), first = largest(s, i, -1), second = largest(s, i, first);
     shares_voxel voxel = {(float)((double)samples / pow(s->rule.samples, 3)), 0, -1};
-    if (second >= 0) {
-        double own = s->sum[first * size + i], other = s->sum[second * size + i];
-        voxel.mix = s->volume[second];
-        voxel.mixture = (float)(other / (own + other));
+    if (p->second >= 0) {
+        voxel.mix = s->volume[p->second];
+        voxel.mixture = (float)p->mixture;
         kept[voxel.mix].mixed++;
+        count_divided(s, i, p, kept);
     }
     if (mem_grow(&list->voxel, &list->capacity, list->count + 1, sizeof *list->voxel, "voxels", e))
         return -1;
     list->voxel[list->count++] = voxel;
-    kept[at.volume].kept++;
-    if (s->rule.borders && second >= 0 && (double)samples == pow(s->rule.samples, 3) &&
-        s->sum[first * size + i] + s->sum[second * size + i] == samples &&
-        add_border(s, i, second, s->sum[second * size + i], list, e))
+    kept[s->volume[p->first]].kept++;
+    if (s->rule.borders && p->second >= 0 && add_border(s, i, p, samples, list, e))
         return -1;
     if (!s->rule.moments)
         return 0;
@@ -329,9 +505,10 @@ int shares_row(shares *s, int64_t j, int64_t k, climb_runs *to, shares_list *lis
         int64_t samples = total(s, i);
         if (samples == 0 || (double)samples < s->rule.least * all)
             continue;
-        int32_t at = (int32_t)(s->low + i);
-        climb_run voxel = {at, at + 1, (int32_t)j, (int32_t)k, s->volume[largest(s, i, -1)]};
-        if (add_share(s, i, voxel, samples, list, kept, e) || add_voxel(to, first, voxel, e))
+        const pair p = find_pair(s, i, samples);
+        const int32_t at = (int32_t)(s->low + i);
+        const climb_run voxel = {at, at + 1, (int32_t)j, (int32_t)k, s->volume[p.first]};
+        if (add_share(s, i, &p, samples, list, kept, e) || add_voxel(to, first, voxel, e))
             return -1;
     }
     forget(s);

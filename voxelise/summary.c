@@ -132,7 +132,10 @@ static bool warn_of(const summary *s, int32_t v, notes *warnings)
     const climb_count *n = &s->x->count[v];
     const int64_t layer = layers_at(s->layer, s->plan, v);
     const char *counted = s->x->fraction ? "sample" : "voxel";
-    if (layer >= 0 && layers_thickness(s->layer, layer) < grid_longest(s->g) * (1 - rounding))
+    const bool thin = layer >= 0 && layers_thickness(s->layer, layer) < grid_longest(s->g) * (1 - rounding);
+    if (thin && s->x->fraction)
+        report_layer_share(warnings, s->layer, layer, n, s->laminates, s->samples, s->g, s->unit);
+    else if (thin)
         report_layer(warnings, s->layer, layer, v, s->x, s->g, s->unit);
     else if (n->inside == 0)
         notes_add(warnings,

@@ -20,6 +20,7 @@ typedef struct summary {
     const char *const *material; /* names */
     int64_t samples;             /* of a voxel, along each axis; 1: by centres */
     bool boxed;                  /* --box */
+    bool laminates;              /* --mixed laminate */
     bool verbose;                /* priorities and surfaces too */
 } summary;
 
@@ -29,7 +30,7 @@ text_table *summary_table(const summary *s, err *e);
 /* By shares: how many voxels the surfaces enclose. */
 double summary_enclosed(const voxels *x);
 
-/* Warns of volumes without voxels, of layers that are too thin, and of muscles that
+/* Warns of volumes without voxels, of layers that voxels do not show, and of muscles that
  * keep at most half of their voxels. */
 int summary_warn(const summary *s, notes *warnings, err *e);
 

@@ -354,3 +354,19 @@ void volumes_notes(const volumes *v, bool by_name, notes *warnings)
                       word);
     }
 }
+
+bool volumes_is_of_surface(const volumes *v, int32_t group, int32_t surface)
+{
+    for (int64_t t = v->token_start[group]; t < v->token_start[group + 1]; t++)
+        if (v->token[t] == surface)
+            return true;
+    return false;
+}
+
+bool volumes_is_of_volume(const volumes *v, int32_t group, int32_t volume)
+{
+    for (int64_t m = v->group_start[group]; m < v->group_start[group + 1]; m++)
+        if (v->member[m].volume == volume)
+            return true;
+    return false;
+}

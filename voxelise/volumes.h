@@ -77,6 +77,10 @@ int volumes_join(volumes *v, const volumes_link *link, int64_t links, bool marks
 /* The first length characters of a name, in lower case; the caller frees it. NULL with e filled on no memory. */
 char *volumes_lower(const char *name, size_t length, err *e);
 
+/* Whether a group's polygons are of a surface, and whether they bound a volume. */
+bool volumes_is_of_surface(const volumes *v, int32_t group, int32_t surface);
+bool volumes_is_of_volume(const volumes *v, int32_t group, int32_t volume);
+
 bool volumes_begins(const char *name, const char *with);
 bool volumes_is_rigid(const char *name);
 

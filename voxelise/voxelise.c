@@ -268,7 +268,7 @@ static bool opens_slits(const job *j)
 }
 
 /* What is inside, by centres or by samples; samples: the lattice of the one or the other. */
-static int look_inside(job *j, const grid *samples, const shares_rule *rule, err *e)
+static int look_inside(job *j, const grid *samples, const shares_rule *rule, const voxels_strata *strata, err *e)
 {
     const inside_triangles t = solids_triangles(&j->solid, &j->plan, false);
     const inside_triangles lowest = solids_triangles(&j->solid, &j->plan, true);
@@ -285,7 +285,7 @@ static int look_inside(job *j, const grid *samples, const shares_rule *rule, err
     progress shown;
     progress_start(&shown, table.name, "slabs", (double)j->test.slabs, j->t->common->quiet);
     const cuts *cut = opens_slits(j) ? &j->cut : NULL;
-    int status = voxels_find(&j->x, &j->test, level, j->plan.volumes, rule, cut, j->threads, &shown, e);
+    int status = voxels_find(&j->x, &j->test, level, j->plan.volumes, rule, cut, strata, j->threads, &shown, e);
     progress_stop(&shown);
     free(level);
     return status;
@@ -296,14 +296,26 @@ static bool takes_moments(const struct options *o)
     return o->fraction > 0 && o->strain != STRAIN_CENTRE;
 }
 
-static int find_voxels(job *j, err *e)
+static int look_by_shares(job *j, const model *m, err *e)
+{
+    shares_rule rule = {.samples = (int)j->o->fraction,
+                        .least = isnan(j->o->least) ? 0 : j->o->least,
+                        .moments = takes_moments(j->o),
+                        .borders = j->o->mixed > 0};
+    layers_samples of = {0};
+    if (grid_divide(&j->samples, &j->g, rule.samples, e) ||
+        (j->layer.layers && layers_sample(&of, &j->layer, &j->plan, m, &j->surface, &j->samples, rule.samples, e)))
+        return -1;
+    rule.modulus = of.modulus, rule.lowest = of.strata.lowest, rule.layers = of.strata.layers;
+    const int status = look_inside(j, &j->samples, &rule, of.made ? &of.strata : NULL, e);
+    layers_samples_free(&of);
+    return status;
+}
+
+static int find_voxels(job *j, const model *m, err *e)
 {
     bool by_shares = j->o->fraction > 0;
-    shares_rule rule = {(int)j->o->fraction, isnan(j->o->least) ? 0 : j->o->least, takes_moments(j->o),
-                        j->o->mixed > 0};
-    if (by_shares && grid_divide(&j->samples, &j->g, rule.samples, e))
-        return -1;
-    if (by_shares ? look_inside(j, &j->samples, &rule, e) : look_inside(j, &j->g, NULL, e))
+    if (by_shares ? look_by_shares(j, m, e) : look_inside(j, &j->g, NULL, NULL, e))
         return -1;
     if (j->x.elements)
         return 0;
@@ -318,7 +330,8 @@ static int open_slits(job *j, err *e)
     const inside_triangles lowest = solids_triangles(&j->solid, &j->plan, true);
     const bool by_shares = j->o->fraction > 0;
     return slits_find(&j->slit, &j->x, &j->cut, &lowest, by_shares ? &j->samples : &j->g,
-                      by_shares ? (int)j->o->fraction : 1, j->plan.volumes, e);
+                      by_shares ? (int)j->o->fraction : 1, j->plan.volumes + (by_shares ? (int32_t)j->layer.layers : 0),
+                      e);
 }
 
 /* Where slits stay as they are: what elements fill. */
@@ -369,6 +382,7 @@ static int say_volumes(job *j, const model *m, err *e)
                        .material = (const char *const *)model_find(m, "material.name")->str,
                        .samples = j->x.fraction ? j->o->fraction : 1,
                        .boxed = j->o->box.count > 0,
+                       .laminates = j->o->mixed > 0,
                        .verbose = j->t->common->verbose};
     text_table *rows = summary_table(&s, e);
     const char *plural = j->plan.volumes == 1 ? "" : "s";
@@ -411,23 +425,6 @@ static double say_time(const job *j, const char *what, double since)
 
 /* ---- --check */
 
-/* Whether a group's polygons are of a surface, and whether they bound a volume. */
-static bool is_of_surface(const volumes *v, int32_t group, int32_t number)
-{
-    for (int64_t t = v->token_start[group]; t < v->token_start[group + 1]; t++)
-        if (v->token[t] == number)
-            return true;
-    return false;
-}
-
-static bool is_of_volume(const volumes *v, int32_t group, int32_t number)
-{
-    for (int64_t m = v->group_start[group]; m < v->group_start[group + 1]; m++)
-        if (v->member[m].volume == number)
-            return true;
-    return false;
-}
-
 /* What --check needs for all surfaces and volumes. */
 typedef struct checking {
     job *j;
@@ -456,7 +453,7 @@ static int check_surfaces(const checking *c, err *e)
         check_result r;
         if (j->plan.surface[s].polygons == 0)
             continue;
-        if (look_at(c, is_of_surface, s, &r, e))
+        if (look_at(c, volumes_is_of_surface, s, &r, e))
             return -1;
         report_surface_row(c->surfaces, j->plan.surface[s].name, &r, c->voxel != NULL);
         report_surface(c->detail, &j->plan, s, &r, num_unit_name(j->unit));
@@ -473,7 +470,7 @@ static int check_volumes(const checking *c, err *e)
         const volumes_volume *a = &j->plan.volume[v];
         check_result r;
         bool several = strchr(a->surfaces, ' ') != NULL;
-        if (several && look_at(c, is_of_volume, v, &r, e))
+        if (several && look_at(c, volumes_is_of_volume, v, &r, e))
             return -1;
         report_volume_row(c->volumes, a, j->solid.open[v]);
         report_volume(c->detail, a, several ? &r : NULL, j->solid.open[v], j->solid.open_at[v], num_unit_name(j->unit));
@@ -548,7 +545,7 @@ static int prepare(job *j, model *m, err *e)
 static int work(job *j, model *m, err *e)
 {
     double clock = clock_now();
-    if (make_grid(j, e) || find_voxels(j, e))
+    if (make_grid(j, e) || find_voxels(j, m, e))
         return -1;
     clock = say_time(j, "finding what is inside", clock);
     if (opens_slits(j) ? open_slits(j, e) : find_gaps(j, e))

@@ -1,6 +1,7 @@
 #include "voxelise/voxels.h"
 
 #include "base/mem.h"
+#include "voxelise/depths.h"
 
 #include <math.h>
 #include <stdatomic.h>
@@ -21,7 +22,7 @@ typedef struct chunk {
 } chunk;
 
 typedef struct counter {
-    atomic_llong inside, reached, kept, mixed;
+    atomic_llong inside, reached, kept, mixed, divided;
 } counter;
 
 typedef struct work {
@@ -29,10 +30,11 @@ typedef struct work {
     const int32_t *level;
     int32_t volumes;
     const shares_rule *rule;
-    const cuts *cut;  /* NULL: parts are not looked for */
-    int64_t first;    /* slab of this part */
-    chunk *chunk;     /* slabs; NULL: elements are only counted */
-    counter *counter; /* volumes */
+    const cuts *cut;             /* NULL: parts are not looked for */
+    const voxels_strata *strata; /* or NULL */
+    int64_t first;               /* slab of this part */
+    chunk *chunk;                /* slabs; NULL: elements are only counted */
+    counter *counter;            /* volumes, with the layers */
     atomic_bool failed;
 } work;
 
@@ -42,8 +44,10 @@ typedef struct scratch {
     climb climb;
     shares shares;
     pieces pieces;
-    climb_runs samples;      /* runs of one row of them */
-    climb_count *kept;       /* volumes: their voxels by shares */
+    climb_runs samples; /* runs of the rows of them that are in one row of voxels */
+    climb_count *kept;  /* volumes, with the layers: their voxels by shares; of layers all counts */
+    uint8_t *step;      /* samples of a row of voxels: a layer + 1, 0: deeper than all */
+    int64_t step_capacity;
     int64_t low[2], high[2]; /* of its parts, along y and z */
 } scratch;
 
@@ -68,16 +72,33 @@ int voxels_check_memory(const grid *g, double elements, double more, double avai
 
 /* ---- slabs */
 
-/* Whole numbers: the sums are the same in any order. */
-static void add_counts(work *w, const climb_count *count)
+/* All volumes, with the layers; and the number that a volume then has. */
+static int32_t volumes_of(const work *w)
 {
-    for (int32_t v = 0; v < w->volumes; v++) {
-        if (count[v].inside == 0)
+    return w->volumes + (w->strata ? w->strata->layers : 0);
+}
+
+static int32_t moved(const work *w, int32_t volume)
+{
+    return w->strata && volume >= w->strata->lowest ? volume + w->strata->layers : volume;
+}
+
+/* Whole numbers: the sums are the same in any order. kept: by shares, or NULL. */
+static void add_counts(work *w, const climb_count *count, climb_count *kept)
+{
+    for (int32_t v = 0; kept && v < w->volumes; v++) {
+        climb_count *to = &kept[moved(w, v)];
+        to->inside = count[v].inside, to->reached = count[v].reached;
+    }
+    for (int32_t v = 0; v < (kept ? volumes_of(w) : w->volumes); v++) {
+        const climb_count *from = kept ? &kept[v] : &count[v];
+        if (from->inside == 0)
             continue;
-        atomic_fetch_add(&w->counter[v].inside, count[v].inside);
-        atomic_fetch_add(&w->counter[v].reached, count[v].reached);
-        atomic_fetch_add(&w->counter[v].kept, count[v].kept);
-        atomic_fetch_add(&w->counter[v].mixed, count[v].mixed);
+        atomic_fetch_add(&w->counter[v].inside, from->inside);
+        atomic_fetch_add(&w->counter[v].reached, from->reached);
+        atomic_fetch_add(&w->counter[v].kept, from->kept);
+        atomic_fetch_add(&w->counter[v].mixed, from->mixed);
+        atomic_fetch_add(&w->counter[v].divided, from->divided);
     }
 }
 
@@ -102,22 +123,86 @@ static int by_centres(scratch *s, climb_runs *to, err *e)
     return 0;
 }
 
+static int add_run(scratch *s, const work *w, climb_run run, err *e)
+{
+    return shares_add(&s->shares, &run, e) || (w->cut && pieces_add(&s->pieces, &run, e)) ? -1 : 0;
+}
+
+/* Of a row of voxels: the samples whose depth counts, and how deep these are. low, high: of the row. */
+static int find_steps(scratch *s, const work *w, const int64_t low[3], const int64_t high[3], err *e)
+{
+    const int64_t x = high[0] - low[0], y = high[1] - low[1], cells = x * y * (high[2] - low[2]);
+    if (mem_grow(&s->step, &s->step_capacity, cells, sizeof *s->step, "depths", e))
+        return -1;
+    memset(s->step, DEPTHS_UNWANTED, (size_t)cells);
+    for (int64_t r = 0; r < s->samples.runs; r++) {
+        const climb_run *run = &s->samples.run[r];
+        if (run->volume < w->strata->lowest)
+            memset(s->step + ((run->k - low[2]) * y + run->j - low[1]) * x + run->from - low[0], 0,
+                   (size_t)(run->to - run->from));
+    }
+    return depths_look(w->strata->depth, low, high, s->step, e);
+}
+
+/* A run of level 0, cut where layers change. step: of its first sample. */
+static int add_layered(scratch *s, const work *w, const climb_run *run, const uint8_t *step, err *e)
+{
+    for (int32_t from = run->from, to; from < run->to; from = to) {
+        const int layer = step[from - run->from];
+        climb_run part = *run;
+        for (to = from; to < run->to && step[to - run->from] == layer; to++)
+            ;
+        part.from = from, part.to = to;
+        part.volume = layer ? w->strata->lowest + layer - 1 : run->volume;
+        if (layer) {
+            s->kept[part.volume].inside += to - from;
+            s->kept[part.volume].reached += to - from;
+        }
+        if (add_run(s, w, part, e))
+            return -1;
+    }
+    return 0;
+}
+
+/* The samples of a row of voxels, in layers. */
+static int add_strata(scratch *s, const work *w, int64_t j, int64_t k, err *e)
+{
+    const int64_t n = w->rule->samples;
+    int64_t low[3] = {INT32_MAX, j * n, k * n}, high[3] = {INT32_MIN, (j + 1) * n, (k + 1) * n};
+    for (int64_t r = 0; r < s->samples.runs; r++) {
+        const climb_run *run = &s->samples.run[r];
+        low[0] = run->from < low[0] ? run->from : low[0];
+        high[0] = run->to > high[0] ? run->to : high[0];
+    }
+    if (s->samples.runs && find_steps(s, w, low, high, e))
+        return -1;
+    for (int64_t r = 0; r < s->samples.runs; r++) {
+        climb_run run = s->samples.run[r];
+        const uint8_t *step =
+            s->step + ((run.k - low[2]) * n + run.j - low[1]) * (high[0] - low[0]) + run.from - low[0];
+        const bool low_level = run.volume < w->strata->lowest;
+        run.volume = moved(w, run.volume);
+        if (low_level ? add_layered(s, w, &run, step, e) : add_run(s, w, run, e))
+            return -1;
+    }
+    return 0;
+}
+
 /* The samples of one row of voxels. */
 static int add_samples(scratch *s, const work *w, int64_t j, int64_t k, err *e)
 {
     int samples = s->shares.rule.samples;
+    s->samples.runs = 0;
     for (int64_t z = k * samples; z < (k + 1) * samples; z++)
-        for (int64_t y = j * samples; y < (j + 1) * samples; y++) {
-            s->samples.runs = 0;
-            if (y < s->low[0] || y >= s->high[0] || z < s->low[1] || z >= s->high[1])
-                continue;
-            if (climb_row(&s->climb, &s->slab, y, z, &s->samples, e))
+        for (int64_t y = j * samples; y < (j + 1) * samples; y++)
+            if (y >= s->low[0] && y < s->high[0] && z >= s->low[1] && z < s->high[1] &&
+                climb_row(&s->climb, &s->slab, y, z, &s->samples, e))
                 return -1;
-            for (int64_t r = 0; r < s->samples.runs; r++)
-                if (shares_add(&s->shares, &s->samples.run[r], e) ||
-                    (w->cut && pieces_add(&s->pieces, &s->samples.run[r], e)))
-                    return -1;
-        }
+    if (w->strata)
+        return add_strata(s, w, j, k, e);
+    for (int64_t r = 0; r < s->samples.runs; r++)
+        if (add_run(s, w, s->samples.run[r], e))
+            return -1;
     return 0;
 }
 
@@ -155,17 +240,11 @@ static int look(scratch *s, work *w, int64_t number, err *e)
     find_extent(s);
     if (!w->rule || !w->chunk)
         return by_centres(s, w->chunk ? &w->chunk[number].to : NULL, e);
-    if (shares_create(&s->shares, w->test->mesh.g, w->rule, w->volumes, e) ||
+    if (shares_create(&s->shares, w->test->mesh.g, w->rule, volumes_of(w), e) ||
         (w->cut && pieces_create(&s->pieces, w->test->mesh.g, w->rule->samples, w->cut, e)))
         return -1;
-    s->kept = mem_array(w->volumes, sizeof *s->kept, "volumes", e);
-    if (!s->kept || by_shares(s, w, &w->chunk[number], e))
-        return -1;
-    for (int32_t v = 0; v < w->volumes; v++) {
-        s->climb.count[v].kept = s->kept[v].kept;
-        s->climb.count[v].mixed = s->kept[v].mixed;
-    }
-    return 0;
+    s->kept = mem_array(volumes_of(w), sizeof *s->kept, "volumes", e);
+    return s->kept && !by_shares(s, w, &w->chunk[number], e) ? 0 : -1;
 }
 
 static void do_slab(void *context, int64_t chunk_number, int64_t from, int64_t to)
@@ -178,13 +257,14 @@ static void do_slab(void *context, int64_t chunk_number, int64_t from, int64_t t
         if (look(&s, w, number, &e))
             atomic_store(&w->failed, true); /* nothing here fails but for want of memory */
         else
-            add_counts(w, s.climb.count);
+            add_counts(w, s.climb.count, s.kept);
         inside_slab_free(&s.slab);
         climb_free(&s.climb);
         shares_free(&s.shares);
         pieces_free(&s.pieces);
         free(s.samples.run);
         free(s.kept);
+        free(s.step);
     }
 }
 
@@ -299,7 +379,7 @@ static int check_memory(const work *w, pool *threads, err *e)
 static int make_lists(voxels *x, const work *w, err *e)
 {
     int64_t mixed = 0;
-    for (int32_t v = 0; v < w->volumes; v++)
+    for (int32_t v = 0; v < volumes_of(w); v++)
         mixed += x->count[v].mixed;
     x->run = mem_array(x->runs, sizeof *x->run, "runs of voxels", e);
     if (!x->run || !w->rule)
@@ -366,22 +446,24 @@ static int join_chunks(voxels *x, const work *w, err *e)
 
 static void take_counts(voxels *x, const work *w)
 {
-    for (int32_t v = 0; v < w->volumes; v++)
+    for (int32_t v = 0; v < volumes_of(w); v++)
         x->count[v] = (climb_count){atomic_load(&w->counter[v].inside), atomic_load(&w->counter[v].reached),
-                                    atomic_load(&w->counter[v].kept), atomic_load(&w->counter[v].mixed)};
+                                    atomic_load(&w->counter[v].kept), atomic_load(&w->counter[v].mixed),
+                                    atomic_load(&w->counter[v].divided)};
 }
 
 int voxels_find(voxels *x, const inside *test, const int32_t *level, int32_t volumes, const shares_rule *rule,
-                const cuts *cut, pool *threads, progress *shown, err *e)
+                const cuts *cut, const voxels_strata *strata, pool *threads, progress *shown, err *e)
 {
     *x = (voxels){0};
     work w = {.test = test, .level = level, .volumes = volumes, .rule = rule, .cut = rule ? cut : NULL};
+    w.strata = rule ? strata : NULL;
     int status = -1;
     if (check_memory(&w, threads, e))
         return -1;
     w.chunk = mem_array(test->slabs, sizeof *w.chunk, "slabs", e);
-    w.counter = mem_array(volumes, sizeof *w.counter, "volumes", e);
-    x->count = mem_array(volumes, sizeof *x->count, "volumes", e);
+    w.counter = mem_array(volumes_of(&w), sizeof *w.counter, "volumes", e);
+    x->count = mem_array(volumes_of(&w), sizeof *x->count, "volumes", e);
     if (!w.chunk || !w.counter || !x->count)
         goto out;
     run_parts(&w, threads, shown);

@@ -10,6 +10,15 @@
 #include "voxelise/pieces.h"
 #include "voxelise/shares.h"
 
+struct depths;
+
+/* Layers from the skin inward, by shares: samples in volumes of level 0 are in layers by their depths (depths.h). The
+ * layers are volumes that follow those of level 0; all others follow them. Borrowed. */
+typedef struct voxels_strata {
+    const struct depths *depth; /* of samples */
+    int32_t lowest, layers;     /* volumes of level 0; layers */
+} voxels_strata;
+
 typedef struct voxels {
     climb_run *run;
     int64_t runs, elements;
@@ -25,10 +34,10 @@ typedef struct voxels {
 
 /* test: with rays along CLIMB_RAY; by shares, of the lattice of samples. level: of each volume; volumes are in order of
  * level, then of priority. rule: NULL for centres. cut (NULL: none are looked for): the slits between samples; then the
- * parts of voxels are found too. Refuses, before any of it is allocated, what would not fit in memory. progress (may be
- * NULL) counts slabs and has been started. */
+ * parts of voxels are found too. strata (NULL: there are none): then x's volumes are with the layers. Refuses, before
+ * any of it is allocated, what would not fit in memory. progress (may be NULL) counts slabs and has been started. */
 int voxels_find(voxels *x, const inside *test, const int32_t *level, int32_t volumes, const shares_rule *rule,
-                const cuts *cut, pool *threads, progress *shown, err *e);
+                const cuts *cut, const voxels_strata *strata, pool *threads, progress *shown, err *e);
 
 void voxels_free(voxels *x);
 

@@ -105,7 +105,7 @@ static int find_inside(subject *s, const grid *g, int cells, pool *threads, voxe
     double start = bench_clock();
     if (inside_create(&test, g, &t, CLIMB_RAY, 1, threads, e))
         return -1;
-    int status = voxels_find(x, &test, &level, 1, NULL, NULL, threads, NULL, e);
+    int status = voxels_find(x, &test, &level, 1, NULL, NULL, NULL, threads, NULL, e);
     bench_take(&s->all, name_of(s, "inside mask", cells, pool_threads(threads)), grid_count(g), "cell",
                bench_clock() - start);
     inside_free(&test);

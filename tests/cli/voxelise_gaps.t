@@ -163,6 +163,17 @@ echo 'a thickness=0.7' >"$T/layers"
 layers -s 1,1,0.5 --layers "$T/layers" "$T/box.obj" >"$T/got"
 check "flat voxels: by their longest side" grep -q 'less than a voxel of 1 mm' "$T/got"
 
+# By shares there are no stripes: what is said is what else is not right.
+echo 'a thickness=0.7' >"$T/layers"
+is "$(layers -s 1 --fraction 4 --layers "$T/layers" "$T/box.obj" | grep -c '^a is 0.7 mm thick, .*too soft along itself, which --mixed laminate mends')" 1 "by shares, with moduli between"
+is "$(layers -s 1 --fraction 4 --mixed laminate --layers "$T/layers" "$T/box.obj")" "" "as laminates it is as it should be"
+echo 'a thickness=0.1' >"$T/layers"
+is "$(layers -s 1 --fraction 4 --mixed laminate --layers "$T/layers" "$T/box.obj" | grep -c 'less than half as thick as samples')" 1 "less than half as thick as samples are apart"
+printf 'a thickness=0.5\nb thickness=0.3 material=b\n' >"$T/layers"
+printf 'tissue E=3000\na E=9000\nb E=5000\n' >"$T/materials"
+is "$(layers -s 1 --fraction 8 --mixed laminate --layers "$T/layers" --materials "$T/materials" "$T/box.obj" | grep -c '^b is 0.3 mm thick, .* elements of three layers and more')" 1 \
+    "three layers in one voxel"
+
 # ---- the real face: lips that stand 3 mm apart in the middle and touch at the corners of the mouth
 
 if [ -z "$DATA" ]; then

@@ -235,7 +235,7 @@ static void test_energy(form f, hourglass_control control, double ratio, bool cu
        f, control.kind, ratio, cut ? ", cut" : "", strain, worst, left);
 }
 
-/* Of one material: the box without the border, where the parts have the moments of the whole (none, if it is not cut). */
+/* Of one material: the box without the border, where the parts have the moments of the whole. */
 static void test_one(bool cut)
 {
     const element_fibre none = {.tension = 0};

@@ -76,9 +76,8 @@ static void make_scene(scene *s)
         s->depth[i] = depth += scale * (rand() % 6 ? uniform(0.05, 3) : uniform(0, 100));
 }
 
-static uint8_t step_of(const scene *s, const climb_run *r, int32_t i)
+static double depth_at(const scene *s, const int *cell)
 {
-    const int32_t cell[3] = {i, r->j, r->k};
     double q[3], p[3], nearest = INFINITY;
     for (int a = 0; a < 3; a++)
         q[a] = grid_centre(&s->g, a, cell[a]);
@@ -86,8 +85,13 @@ static uint8_t step_of(const scene *s, const climb_run *r, int32_t i)
         const double *c = &s->corner[9 * t];
         nearest = fmin(nearest, sqrt(closest_triangle(c, c + 3, c + 6, q, p)));
     }
+    return nearest;
+}
+
+static uint8_t step_for(const scene *s, double depth)
+{
     for (int64_t d = 0; d < s->depths; d++)
-        if (nearest < s->depth[d])
+        if (depth < s->depth[d])
             return (uint8_t)(d + 1);
     return 0;
 }
@@ -109,6 +113,81 @@ static bool find(const scene *s, int count, uint8_t *step)
     return good;
 }
 
+/* ---- samples of voxels */
+
+enum { SAMPLES = 8, SIDE = 3 * SAMPLES };
+
+static int64_t sample_at(const int *at)
+{
+    return ((int64_t)at[2] * SIDE + at[1]) * SIDE + at[0];
+}
+
+/* All in two halves. False: it failed. */
+static bool look(const depths *d, uint8_t *step)
+{
+    err e = {0};
+    const int64_t low[3] = {0, 0, 0}, middle[3] = {0, 0, 11}, half[3] = {SIDE, SIDE, 11}, high[3] = {SIDE, SIDE, SIDE};
+    return !depths_look(d, low, half, step, &e) && !depths_look(d, middle, high, step + 11 * SIDE * SIDE, &e);
+}
+
+/* Below a plane across an axis: a layer of a part of a sample, or of some and a part, has its own volume. */
+static void test_plane(int axis)
+{
+    static const double depth[] = {.3, 1.7, 9.2};
+    static uint8_t step[SIDE * SIDE * SIDE];
+    double corner[9] = {0};
+    const grid g = {.spacing = {1, 1, 1}, .high = {SIDE, SIDE, SIDE}};
+    const depths_surface surface = {corner, 1};
+    err e = {0};
+    int64_t count[4] = {0};
+    corner[(axis + 1) % 3] = corner[3 + (axis + 1) % 3] = -100, corner[6 + (axis + 1) % 3] = 200;
+    corner[(axis + 2) % 3] = -100, corner[3 + (axis + 2) % 3] = 200, corner[6 + (axis + 2) % 3] = -100;
+    depths *d = depths_create(depth, 3, &surface, &g, SAMPLES, &e);
+    memset(step, 0, sizeof step);
+    step[SIDE * SIDE * SIDE - 1] = DEPTHS_UNWANTED;
+    const bool good = d && look(d, step);
+    for (int64_t i = 0; good && i < SIDE * SIDE * SIDE - 1; i++)
+        count[step[i]]++;
+    depths_destroy(d);
+    for (int i = 1; i < 4; i++)
+        near_((double)count[i] / (SIDE * SIDE), depth[i - 1] - (i > 1 ? depth[i - 2] : 0), .01,
+              "axis %d: the volume of layer %d", axis, i);
+    ok(step[SIDE * SIDE * SIDE - 1] == DEPTHS_UNWANTED, "axis %d: what is not wanted stays", axis);
+}
+
+/* Deeper than all is last. */
+static int order_of(uint8_t step)
+{
+    return step ? step : DEPTHS + 1;
+}
+
+/* Below any triangles a sample's step is that of a depth within a sample's width of its own. */
+static void test_samples(scene *s)
+{
+    static uint8_t step[SIDE * SIDE * SIDE];
+    int64_t wrong = 0, failed = 0;
+    for (int n = 0; n < 6; n++) {
+        err e = {0};
+        make_scene(s);
+        for (int a = 0; a < 3; a++)
+            s->g.low[a] = 0, s->g.high[a] = SIDE;
+        const double width = s->g.spacing[0] + s->g.spacing[1] + s->g.spacing[2];
+        depths *d = depths_create(s->depth, s->depths, &s->s, &s->g, SAMPLES, &e);
+        memset(step, 0, sizeof step);
+        failed += !d || !look(d, step);
+        depths_destroy(d);
+        for (int at[3] = {0}; at[2] < SIDE; at[2] += 5)
+            for (at[1] = 0; at[1] < SIDE; at[1] += 5)
+                for (at[0] = 0; at[0] < SIDE; at[0] += 5) {
+                    const double deep = depth_at(s, at);
+                    const int first = order_of(step_for(s, deep - width)), last = order_of(step_for(s, deep + width)),
+                              got = order_of(step[sample_at(at)]);
+                    wrong += got < first || got > last;
+                }
+    }
+    ok(!failed && !wrong, "%d samples are not about at their depth", (int)wrong);
+}
+
 int main(void)
 {
     static scene s;
@@ -124,7 +203,8 @@ int main(void)
         unlike += memcmp(one, three, sizeof one) != 0;
         for (int64_t r = 0, voxel = 0; r < s.x.runs; r++)
             for (int32_t i = s.run[r].from; i < s.run[r].to; i++, voxel++) {
-                uint8_t want = s.run[r].volume < 2 ? step_of(&s, &s.run[r], i) : 77;
+                uint8_t want =
+                    s.run[r].volume < 2 ? step_for(&s, depth_at(&s, (int[3]){i, s.run[r].j, s.run[r].k})) : 77;
                 wrong += one[voxel] != want;
                 if (want <= DEPTHS)
                     seen[want]++;
@@ -135,5 +215,8 @@ int main(void)
     ok(!unlike, "%d scenes differ between one thread and three", (int)unlike);
     ok(seen[0] > 100 && seen[1] > 100 && seen[2] > 100, "voxels at many depths: %d %d %d", (int)seen[0], (int)seen[1],
        (int)seen[2]);
+    for (int a = 0; a < 3; a++)
+        test_plane(a);
+    test_samples(&s);
     return done_testing();
 }

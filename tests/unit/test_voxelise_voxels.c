@@ -1,5 +1,6 @@
 // needs: voxelise/surfaces/expansion.c voxelise/surfaces/grid.c voxelise/surfaces/crossing.c voxelise/inside.c
 // needs: voxelise/voxels.c voxelise/climb.c voxelise/shares.c voxelise/build.c voxelise/pieces.c voxelise/cuts.c
+// needs: voxelise/depths.c
 /* Algorithm 1 as it is printed, voxel by voxel over boxes at random, against columns and runs; and the nodes of the
  * elements against a plain table of all corners.
  */
@@ -94,7 +95,7 @@ static bool find_on(const scene *s, const grid *g, const shares_rule *rule, int 
     pool *p = pool_create(threads, &e);
     bool good = p && !inside_create(&test, g, &t, CLIMB_RAY, rule ? rule->samples : 1, p, &e);
     if (good) {
-        good = !voxels_find(x, &test, s->level, BOXES, rule, NULL, p, NULL, &e);
+        good = !voxels_find(x, &test, s->level, BOXES, rule, NULL, NULL, p, NULL, &e);
         inside_free(&test);
     }
     pool_destroy(p);
@@ -313,8 +314,9 @@ static bool same_as_samples(const scene *s, const shares_rule *rule)
 
 static void test_shares(void)
 {
-    static const shares_rule rule[] = {{1, 0, true, true},   {2, 0, true, true}, {3, 0.4, true, false},
-                                       {4, 0.5, true, true}, {5, 1, true, true}, {7, 0.1, false, true}};
+    static const shares_rule rule[] = {{1, 0, true, true, NULL, 0, 0},    {2, 0, true, true, NULL, 0, 0},
+                                       {3, 0.4, true, false, NULL, 0, 0}, {4, 0.5, true, true, NULL, 0, 0},
+                                       {5, 1, true, true, NULL, 0, 0},    {7, 0.1, false, true, NULL, 0, 0}};
     int scenes = 60, wrong = 0;
     for (int n = 0; n < scenes; n++) {
         scene s;

@@ -100,7 +100,8 @@ static double fibred_square_at_rest(const tled_problem *p, int64_t element, cons
 /* What curved muscles add; moments: NULL where it is not cut. */
 static double muscles_of_cut(const tled_problem *p, int64_t element, const float *moments)
 {
-    return p->curved ? (moments ? cut_raises(p, element, moments) : 1) * square_of_muscles(p, element) : 0;
+    const double raises = moments ? cut_raises(p, element, moments) : 1;
+    return p->curved ? raises * square_of_muscles(p, element) : 0;
 }
 
 static double cut_square_at_rest(const tled_problem *p, int64_t element, const float *moments, step_fibres *fibres,
