@@ -271,16 +271,18 @@ static int differing(const mesh *m, const setting *s, const uint8_t *mask)
     return count;
 }
 
-/* How much of everything: more with SINEW_LONG. */
-static int times(void)
+/* So many meshes, or more with SINEW_LONG; a fifth with sanitizers. */
+static int meshes_of(int count)
 {
     const char *is_long = getenv("SINEW_LONG");
-    return is_long && *is_long ? 25 : 1;
+    if (is_long && *is_long)
+        return 25 * count;
+    return getenv("SINEW_SANITIZED") ? count / 5 : count;
 }
 
 static void test_reference(const char *name, setting s, int64_t size, int meshes)
 {
-    meshes *= times();
+    meshes = meshes_of(meshes);
     int wrong = 0, unlike = 0;
     int64_t within = 0;
     for (int n = 0; n < meshes; n++) {
@@ -300,7 +302,7 @@ static void test_reference(const char *name, setting s, int64_t size, int meshes
 static void test_translation(void)
 {
     static const int64_t far[4] = {3, 1000000, 999999999, -1000000000};
-    int unlike = 0, meshes = 400 * times();
+    int unlike = 0, meshes = meshes_of(400);
     for (int n = 0; n < meshes; n++) {
         mesh m = any_mesh(24);
         setting here = {.half = {0.5, 0.5, 0.5}, .spacing = {2, 4, 2}, .origin = {1, 0, 0}}, there = here;
@@ -317,7 +319,7 @@ static void test_translation(void)
 static void test_rounded(void)
 {
     static const double unit[4] = {0.1, 1e-6 / 3, 123.4567, 2.54e-2};
-    int unlike = 0, meshes = 800 * times();
+    int unlike = 0, meshes = meshes_of(800);
     for (int n = 0; n < meshes; n++) {
         mesh m = any_mesh(24);
         double h = unit[n % 4];
