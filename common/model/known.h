@@ -181,7 +181,7 @@ typedef struct known {
     X("probe.torque", MODEL_F64, "N.m", "probe", 3, 3, KNOWN_FRAME, KNOWN_FINITE, 0, 0, "msds-run or tled-run",        \
       "torque of the tissue on it, about the origin of its frame")                                                     \
     X("bone.displacement", MODEL_F64, "m", "bone", 3, 3, KNOWN_FRAME, KNOWN_FINITE, 0, 0, "tled-run",                  \
-      "how the bone of a film has moved from rest, at the film's place; left out where a script moves no bone")        \
+      "how the bone of a film has moved from rest, at the film's place")                                               \
     X("body.pose", MODEL_F64, "1", "body", 7, 7, KNOWN_FRAME, KNOWN_POSE, 0, 0, "tled-run",                            \
       "its motion from rest: where the origin has moved to, m, and its turn, a unit quaternion x y z w")               \
     X("body.force", MODEL_F64, "N", "body", 3, 3, KNOWN_FRAME, KNOWN_FINITE, 0, 0, "tled-run",                         \

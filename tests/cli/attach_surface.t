@@ -197,7 +197,7 @@ for mixed in between laminate; do
     voxelise -q --unit mm -s 10 --fraction 4 --mixed "$mixed" --materials samples/head.materials "$T/head.obj" | attach -q --surface >"$T/lid"
     known "a head with muscles, mixed elements $mixed" -c zyg_left=.3 -g 0,0,-9.81
 done
-check "without bone that moves they say nothing" sh -c "! sinew info '$T/out' | grep -q bone.displacement"
+check "without bone that moves it is 0" test "$(get bone.displacement.max "$T/out")" = 0
 mv "$T/one" "$T/lid"
 for sets in plain AVX2; do
     for precision in double single; do

@@ -10,9 +10,6 @@
 /* How the bone of a film has moved. value: the curves'. */
 film_bone films_bone(const tled_problem *p, int64_t film, const double *value);
 
-/* Whether the script moves the bone of any. */
-bool films_are_moved(const tled_problem *p);
-
 /* H of a film. moved: displacements of all nodes (x 3) or of the films' nodes; at: 8, where its corners are in it. */
 element_tensor films_gradient(const tled_problem *p, int64_t film, const double *moved, const int32_t *at,
                               const double *value);

@@ -137,14 +137,6 @@ film_bone films_bone(const tled_problem *p, int64_t film, const double *value)
     return to;
 }
 
-bool films_are_moved(const tled_problem *p)
-{
-    for (int64_t i = 3 * p->nodes; i < 3 * (p->nodes + films_count(p)); i++)
-        if (p->hold[i] >= 0)
-            return true;
-    return false;
-}
-
 element_tensor films_gradient(const tled_problem *p, int64_t film, const double *moved, const int32_t *at,
                               const double *value)
 {

@@ -61,10 +61,10 @@ static int add_results(session *s, frame *f, const double *value, err *e)
     return results_add(s->results, f, s->activation, e);
 }
 
-/* How bone that films hang on has moved, where the script moves any. */
+/* How bone that films hang on has moved: in every frame, as all have the same arrays. */
 static int add_bone(const session *s, frame *f, const double *value, err *e)
 {
-    if (!films_are_moved(&s->problem))
+    if (!films_count(&s->problem))
         return 0;
     model_array *to = frame_add(f, &s->m, "bone.displacement", e);
     for (int64_t i = 0; to && i < films_count(&s->problem); i++) {

@@ -329,7 +329,7 @@ static int show(live *l, double time, double came, err *e)
     to->came = came;
     if (to->placed)
         to->at = collider_moment_at(c, time);
-    if (!bodies_count(p) && !l->s->results)
+    if (!bodies_count(p) && !films_count(p) && !l->s->results)
         return 0;
     if (MEM_ROOM(&to->value, &to->room, 3 * p->script->curves, "the live run", e))
         return -1;
