@@ -40,6 +40,11 @@ static int add_probe(const session *s, frame *f, const double *displacement, err
     return now ? collider_add(&s->problem, now, f, &s->m, displacement, e) : 0;
 }
 
+bool tled_frame_takes_curves(const session *s)
+{
+    return bodies_count(&s->problem) || films_count(&s->problem) || s->results;
+}
+
 /* The curves' values at a frame's time. *own is the caller's to free. NULL with e filled. */
 static const double *curves_at(const session *s, double time, double **own, err *e)
 {
@@ -61,7 +66,7 @@ static int add_results(session *s, frame *f, const double *value, err *e)
     return results_add(s->results, f, s->activation, e);
 }
 
-/* How bone that films hang on has moved: in every frame, as all have the same arrays. */
+/* Adds how the bone of each film has moved. Every frame has it, as all frames of a model have the same arrays. */
 static int add_bone(const session *s, frame *f, const double *value, err *e)
 {
     if (!films_count(&s->problem))
@@ -79,7 +84,7 @@ static int add_looks(session *s, frame *f, const field_values *state, err *e)
 {
     const int count = s->problem.fields.count;
     double *own;
-    if (!bodies_count(&s->problem) && !films_count(&s->problem) && !s->results)
+    if (!tled_frame_takes_curves(s))
         return 0;
     const double *value = curves_at(s, f->time, &own, e);
     const bodies_state now = {value,

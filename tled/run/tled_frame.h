@@ -11,6 +11,9 @@
  * filled. */
 int tled_frame_results(session *s, const struct options *o, err *e);
 
+/* Whether frames have more than the fields of a state, for which the curves of their time are needed. */
+bool tled_frame_takes_curves(const session *s);
+
 /* run_setup's, with a session: writes a state as a frame. */
 int tled_frame_write(void *context, double time, const field_values *state, err *e);
 

@@ -8,6 +8,7 @@
 #include "live/stop.h"
 #include "tled/problem/bodies.h"
 #include "tled/problem/step.h"
+#include "tled/run/tled_frame.h"
 #include "tled/run/tled_record.h"
 
 #include <inttypes.h>
@@ -329,7 +330,7 @@ static int show(live *l, double time, double came, err *e)
     to->came = came;
     if (to->placed)
         to->at = collider_moment_at(c, time);
-    if (!bodies_count(p) && !films_count(p) && !l->s->results)
+    if (!tled_frame_takes_curves(l->s))
         return 0;
     if (MEM_ROOM(&to->value, &to->room, 3 * p->script->curves, "the live run", e))
         return -1;
