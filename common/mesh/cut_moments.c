@@ -53,14 +53,11 @@ const float *cut_moments_at(const cut_moments *of, int64_t element)
 
 /* ---- borders */
 
-static int check_rows(const borders *of, const model *m, err *e)
+static int check_rows(const borders *of, const cut_moments *cut, const model *m, err *e)
 {
-    cut_moments cut;
     const int32_t *mix = model_find(m, "element.mix")->i32;
     const float *mixture = model_find(m, "element.mixture")->f32;
     const model_array *fraction = model_find(m, "element.fraction");
-    if (cut_moments_of(&cut, m, e))
-        return -1;
     for (int64_t i = 0; i < of->count; i++) {
         const int32_t element = of->element[i];
         const float *n = of->normal + 3 * i;
@@ -68,7 +65,7 @@ static int check_rows(const borders *of, const model *m, err *e)
             return err_set(e, NULL, 0,
                            "border.element, row %lld: element %d is not mixed of two volumes; expected a mixed element",
                            (long long)i, (int)element);
-        if (fraction && fraction->f32[element] != 1 && !cut_moments_at(&cut, element))
+        if (fraction && fraction->f32[element] != 1 && !cut_moments_at(cut, element))
             return err_set(e, NULL, 0,
                            "border.element, row %lld: element %d has element.fraction %g and no row of cut.element; "
                            "expected it enclosed wholly, or in cut.element",
@@ -79,7 +76,7 @@ static int check_rows(const borders *of, const model *m, err *e)
     return 0;
 }
 
-int borders_of(borders *to, const model *m, err *e)
+int borders_of(borders *to, const cut_moments *cut, const model *m, err *e)
 {
     static const char *const name[] = {"border.element", "border.normal",   "border.moments",
                                        "element.mix",    "element.mixture", "element.lattice"};
@@ -91,7 +88,7 @@ int borders_of(borders *to, const model *m, err *e)
             return -1;
     *to = (borders){model_find(m, name[0])->i32, model_find(m, name[1])->f32, model_find(m, name[2])->f32,
                     model_find(m, name[0])->rows};
-    return check_order(to->element, to->count, name[0], e) ? -1 : check_rows(to, m, e);
+    return check_order(to->element, to->count, name[0], e) ? -1 : check_rows(to, cut, m, e);
 }
 
 int64_t borders_at(const borders *of, int64_t element)

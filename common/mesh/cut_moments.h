@@ -35,8 +35,8 @@ typedef struct borders {
     int64_t count;          /* 0: no element is a laminate */
 } borders;
 
-/* -1 with e filled where a model has some that cannot be. */
-int borders_of(borders *to, const model *m, err *e);
+/* cut: the model's. -1 with e filled where a model has borders that cannot be. */
+int borders_of(borders *to, const cut_moments *cut, const model *m, err *e);
 
 /* Finds the row of an element; -1: it has none. */
 int64_t borders_at(const borders *of, int64_t element);

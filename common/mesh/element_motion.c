@@ -11,15 +11,17 @@
 int element_mesh_of(element_mesh *to, const model *m, err *e)
 {
     const model_array *node = model_need(m, "element.node", e), *rest = model_need(m, "node.position", e);
+    const model_array *fraction = model_find(m, "element.fraction");
     lattice l = {0};
     if (!node || !rest)
         return -1;
     *to = (element_mesh){.node = node->i32, .corners = node->columns, .elements = node->rows, .rest = rest->f64};
     to->is_lattice = node->columns == 8 && model_meta_of(m, "lattice.spacing");
-    if (to->is_lattice && (lattice_of(m, &l, e) || cut_moments_of(&to->cut, m, e) || borders_of(&to->borders, m, e)))
+    if (to->is_lattice &&
+        (lattice_of(m, &l, e) || cut_moments_of(&to->cut, m, e) || borders_of(&to->borders, &to->cut, m, e)))
         return -1;
     memcpy(to->side, l.spacing, sizeof to->side);
-    to->fraction = model_find(m, "element.fraction") ? model_find(m, "element.fraction")->f32 : NULL;
+    to->fraction = fraction ? fraction->f32 : NULL;
     return 0;
 }
 

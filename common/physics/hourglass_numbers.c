@@ -21,7 +21,7 @@ static void by_root(const double root[16], bool transposed, const double m[MODES
 static void stiffness(const double law[HOURGLASS_NUMBERS], double volume, const double basis[9], const double root[16],
                       double to[MODES][MODES])
 {
-    const element_tensor j = {basis[0], basis[1], basis[2], basis[3], basis[4], basis[5], basis[6], basis[7], basis[8]};
+    const element_tensor j = element_tensor_of(basis);
     for (int i = 0; i < MODES; i++) {
         double one[MODES] = {0}, m[MODES];
         hourglass_modes q;

@@ -107,6 +107,15 @@ typedef struct element_tensor {
     real xx, xy, xz, yx, yy, yz, zx, zy, zz;
 } element_tensor;
 
+#ifdef REAL_IS_DOUBLE
+/* Of nine numbers, row by row. */
+ELEMENT_FUNCTION element_tensor element_tensor_of(const double of[9])
+{
+    const element_tensor t = {of[0], of[1], of[2], of[3], of[4], of[5], of[6], of[7], of[8]};
+    return t;
+}
+#endif
+
 ELEMENT_FUNCTION element_tensor element_sum(element_tensor a, element_tensor b)
 {
     element_tensor s = {a.xx + b.xx, a.xy + b.xy, a.xz + b.xz, a.yx + b.yx, a.yy + b.yy,

@@ -94,9 +94,9 @@ static int add_films(const view *v, const materials_map *map, const frame *f, en
         const int64_t element = v->films.element[i];
         const material_numbers of = materials_of_element(map, element);
         const fibre_sets fibres = fibre_sets_at(&v->fibres, element);
-        double n[9];
-        bone_films_gradient(&v->films, i, &bone[i], v->u, v->mesh.node + 8 * element, n);
-        const element_tensor h = {n[0], n[1], n[2], n[3], n[4], n[5], n[6], n[7], n[8]};
+        double rows[9];
+        bone_films_gradient(&v->films, i, &bone[i], v->u, v->mesh.node + 8 * element, rows);
+        const element_tensor h = element_tensor_of(rows);
         to->strain +=
             v->films.area[i] * v->films.depth[i] *
             (material_energy(&of, h) + muscles_energy(&v->muscles, element, h) + fibre_sets_energy(&fibres, h));
@@ -148,11 +148,10 @@ static void view_free(view *v)
     film_rest_free(&v->rest);
 }
 
-/* What frames do not change. *fraction: the elements' shares. */
+/* Reads what is the same in all frames. *fraction: the elements' shares. */
 static int open_model(view *v, const model *m, const material *law, const float **fraction, err *e)
 {
-    const model_array *whole = model_find(m, "element.fraction");
-    *fraction = whole ? whole->f32 : NULL;
+    *fraction = v->mesh.fraction;
     if (fibres_make(&v->fibres, m, law, e) || bone_films_make(&v->films, &v->mesh, m, e))
         return -1;
     if (!v->films.count)

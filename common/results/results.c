@@ -116,7 +116,7 @@ typedef struct held {
     laminate_motion parts;
 } held;
 
-/* What is the element's and its films'. */
+/* Fills what an element has in common with its films. */
 static held held_at(const results *r, int64_t i, element_tensor h, double volume)
 {
     const material_numbers own = materials_of_element(&r->map, i);
@@ -278,11 +278,6 @@ static int64_t chunks_of_elements(const results *r)
     return pool_chunks(r->mesh.elements, CHUNK);
 }
 
-static element_tensor tensor_of(const double h[9])
-{
-    return (element_tensor){h[0], h[1], h[2], h[3], h[4], h[5], h[6], h[7], h[8]};
-}
-
 static void film_work(void *context, int64_t chunk, int64_t from, int64_t to)
 {
     const results *r = context;
@@ -292,7 +287,7 @@ static void film_work(void *context, int64_t chunk, int64_t from, int64_t to)
         const int64_t element = r->films.element[i];
         double h[9];
         bone_films_gradient(&r->films, i, &r->bone[i], r->u, r->mesh.node + 8 * element, h);
-        const held of = held_at(r, element, tensor_of(h), r->films.area[i] * r->films.depth[i]);
+        const held of = held_at(r, element, element_tensor_of(h), r->films.area[i] * r->films.depth[i]);
         add_energy(r, element, &of, sum);
     }
 }
@@ -393,11 +388,10 @@ static int take_control(results *r, err *e)
     return 0;
 }
 
-/* What films leave of elements counts as these. */
+/* Makes the films; an element then counts as what they leave of it. */
 static int take_films(results *r, err *e)
 {
-    const model_array *whole = model_find(r->m, "element.fraction");
-    r->fraction = whole ? whole->f32 : NULL;
+    r->fraction = r->mesh.fraction;
     if (bone_films_make(&r->films, &r->mesh, r->m, e))
         return -1;
     if (!r->films.count)

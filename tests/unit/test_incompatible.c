@@ -128,7 +128,7 @@ static void held(const double at[24], double lambda, double mu, double to[MODES]
     hourglass_modes modes;
     hexahedron_basis(at, basis);
     hourglass_moduli(mu, lambda + 2 * mu / 3, law);
-    const element_tensor j = {basis[0], basis[1], basis[2], basis[3], basis[4], basis[5], basis[6], basis[7], basis[8]};
+    const element_tensor j = element_tensor_of(basis);
     for (int i = 0; i < MODES; i++) {
         double one[MODES] = {0};
         one[i] = 1;

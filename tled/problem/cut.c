@@ -86,7 +86,7 @@ double cut_raises(const tled_problem *p, int64_t element, const float *moments)
 
 int border_borrow(tled_problem *p, const model *m, err *e)
 {
-    if (borders_of(&p->borders, m, e))
+    if (borders_of(&p->borders, &p->cut, m, e))
         return -1;
     const borders *of = &p->borders;
     if (of->count && p->conforming)

@@ -143,7 +143,7 @@ element_tensor films_gradient(const tled_problem *p, int64_t film, const double 
     const film_bone bone = films_bone(p, film, value);
     double h[9];
     bone_films_gradient(&p->films->rows, film, &bone, moved, at, h);
-    return (element_tensor){h[0], h[1], h[2], h[3], h[4], h[5], h[6], h[7], h[8]};
+    return element_tensor_of(h);
 }
 
 static const tled_law *law_of(const tled_problem *p, int64_t element)
@@ -232,7 +232,7 @@ void films_sum(const films_work *w, int64_t i, double force[3])
     double sum[3] = {0};
     for (int32_t k = f->pull_start[i]; k < f->pull_start[i + 1]; k++) {
         const double *p = w->stress + 9 * (int64_t)(f->pull[k] / 8);
-        const element_tensor stress = {p[0], p[1], p[2], p[3], p[4], p[5], p[6], p[7], p[8]};
+        const element_tensor stress = element_tensor_of(p);
         double pull[3];
         films_pull(f, f->pull[k] / 8, f->pull[k] % 8, &stress, pull);
         for (int a = 0; a < 3; a++)
