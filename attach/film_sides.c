@@ -121,7 +121,7 @@ static void halve(const film_piece *t, int i, film_piece *one, film_piece *other
     }
 }
 
-/* Whether a triangle is more than three voxels away from all elements: then it can have no film. */
+/* Tells whether a triangle lies more than three voxels from every element: no film comes of such a triangle. */
 static bool is_away(const film_sides *s, const film_piece *t)
 {
     const double *h = s->grid.spacing, far = 3 * fmax(h[0], fmax(h[1], h[2]));

@@ -280,7 +280,7 @@ int layers_apply(const layers *l, voxels *x, volumes *plan, const obj *o, const 
 
 /* ---- by shares */
 
-/* What volumes are of level 0, and layers, at rest in shear; nan of others. */
+/* Finds the shear modulus at rest of each volume of level 0 and of each layer; it is nan for all others. */
 static double *find_moduli(const layers *l, const volumes *plan, const model *m, err *e)
 {
     const int32_t lowest = lowest_volumes(plan), all = plan->volumes + (int32_t)l->layers;

@@ -31,8 +31,8 @@ void layers_free(layers *l);
  * with priorities that follow its own. g: the lattice of voxels. */
 int layers_apply(const layers *l, voxels *x, volumes *plan, const obj *o, const grid *g, pool *threads, err *e);
 
-/* What finding voxels by shares takes of the layers; it stays where it is. g: the lattice of samples, so
- * many along a voxel; m has materials. -1 with e filled. */
+/* What voxels_find and its rule borrow of the layers. It holds pointers into itself, so it must not be copied. g: the
+ * lattice of samples, so many along a voxel; m has materials. -1 with e filled. */
 typedef struct layers_samples {
     voxels_strata strata;
     double *modulus; /* shares_rule's; owned, as are: */

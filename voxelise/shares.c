@@ -281,9 +281,9 @@ static int64_t total(const shares *s, int64_t i)
 
 /* ---- borders */
 
-/* Whether a part of a voxel is what lies beyond a plane, from 1 on: by how far its middle is from the voxel's across
- * its border, which of half a voxel is half of a side; of a band through the middle, or two corners, it is next to
- * nothing. */
+/* Measures how far a part of a voxel is what lies beyond a plane: from 1 on it is. It goes by how far the part's middle
+ * is from the voxel's across its border: for half a voxel that is half of a side; for a band through the middle, or two
+ * corners, it is next to nothing. */
 static double beyond_plane(const moments_sums *s, int samples)
 {
     const double n = samples, share = (double)s->count / (n * n * n);
@@ -347,7 +347,7 @@ static int64_t extreme(const shares *s, int64_t i, double sign)
     return best;
 }
 
-/* What part of a slot's samples is the second's. */
+/* The part of a slot's samples that counts as the second volume's. */
 static double part_of_second(const shares *s, const pair *p, int64_t slot)
 {
     if (p->divided)
@@ -378,6 +378,8 @@ static bool gather(const shares *s, int64_t i, pair *p)
 {
     int64_t other = -1, layer = -1;
     double count = 0;
+    if (!s->rule.modulus)
+        return false;
     for (int64_t n = 0; n < s->slots; n++) {
         const int32_t samples = samples_of(s, n, i);
         int64_t *best = depth_of(s, n) < 0 ? &other : &layer;
@@ -386,7 +388,7 @@ static bool gather(const shares *s, int64_t i, pair *p)
                         (samples == samples_of(s, *best, i) && s->volume[n] < s->volume[*best])))
             *best = n;
     }
-    if (!s->rule.modulus || other < 0 || layer < 0)
+    if (other < 0 || layer < 0)
         return false;
     const double own = samples_of(s, other, i);
     *p = own > count ? (pair){.first = other, .second = layer, .mixture = count / (own + count)}
@@ -462,7 +464,7 @@ static int add_border(const shares *s, int64_t i, const pair *p, int64_t samples
 
 /* ---- voxels */
 
-/* Volumes whose samples a voxel has as those of two others. */
+/* Counts the volumes whose samples a voxel divides between two others. */
 static void count_divided(const shares *s, int64_t i, const pair *p, climb_count *kept)
 {
     for (int64_t n = 0; n < s->slots; n++)

@@ -72,7 +72,7 @@ int voxels_check_memory(const grid *g, double elements, double more, double avai
 
 /* ---- slabs */
 
-/* All volumes, with the layers; and the number that a volume then has. */
+/* How many volumes there are with the layers; and the number that a volume has among these. */
 static int32_t volumes_of(const work *w)
 {
     return w->volumes + (w->strata ? w->strata->layers : 0);
@@ -128,7 +128,7 @@ static int add_run(scratch *s, const work *w, climb_run run, err *e)
     return shares_add(&s->shares, &run, e) || (w->cut && pieces_add(&s->pieces, &run, e)) ? -1 : 0;
 }
 
-/* Of a row of voxels: the samples whose depth counts, and how deep these are. low, high: of the row. */
+/* Finds the layer of each sample of level 0 in a row of voxels. low, high: the samples of the row. */
 static int find_steps(scratch *s, const work *w, const int64_t low[3], const int64_t high[3], err *e)
 {
     const int64_t x = high[0] - low[0], y = high[1] - low[1], cells = x * y * (high[2] - low[2]);
@@ -164,7 +164,7 @@ static int add_layered(scratch *s, const work *w, const climb_run *run, const ui
     return 0;
 }
 
-/* The samples of a row of voxels, in layers. */
+/* Adds the samples of a row of voxels, those of level 0 in their layers. */
 static int add_strata(scratch *s, const work *w, int64_t j, int64_t k, err *e)
 {
     const int64_t n = w->rule->samples;

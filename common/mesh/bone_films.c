@@ -142,7 +142,7 @@ int bone_films_make(bone_films *to, const element_mesh *mesh, const model *m, er
 
 /* ---- what films leave */
 
-/* What films have of an element is never all of it, so that all nodes hang on something. */
+/* Films take at most this share of an element, so that each of its nodes still hangs on something. */
 static const double most_of = .9;
 
 /* What taking goes by, borrowed. */

@@ -39,8 +39,8 @@ typedef struct film_rest {
     float *cut_moments;
 } film_rest;
 
-/* Of a model that has films. whole: the elements' shares with films, or NULL: 1. *cut, the model's, becomes that of
- * the rest; of a laminate what films leave has the share alone. */
+/* Finds what films leave of the elements of a model that has films. whole: the elements' shares with films, or NULL: 1.
+ * *cut, the model's, becomes that of the rest; of a laminate what films leave has the share alone. */
 int film_rest_make(film_rest *to, const model *m, int64_t elements, const float *whole, const borders *laminates,
                    cut_moments *cut, err *e);
 void film_rest_free(film_rest *r);

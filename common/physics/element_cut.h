@@ -77,7 +77,7 @@ ELEMENT_FUNCTION element_field element_cut_force_of(hourglass_kind kind, element
     return element_force_of(HOURGLASS_ISOTROPIC, p, held, shape); /* P has held->p by now */
 }
 
-/* What a part's forces begin with. */
+/* The strain that the forces of a part are computed from. */
 typedef struct element_cut_state {
     element_tensor h;
     hourglass_modes modes;

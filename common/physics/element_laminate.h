@@ -155,7 +155,7 @@ ELEMENT_FUNCTION element_vector laminate_solved(element_symmetric q, element_vec
     return d;
 }
 
-/* Where the next turn is to be taken: each element by itself, whichever are computed beside it. */
+/* Tells which elements take another turn; each decides for itself, whichever are computed beside it. */
 ELEMENT_FUNCTION real_mask laminate_goes_on(element_vector jump, element_vector left)
 {
     const real a = jump.x * jump.x + jump.y * jump.y + jump.z * jump.z;

@@ -1,5 +1,4 @@
-/* Whether a model whose tissue has something is kept from a card that has all else: for tests of what only some
- * executors have. Owns nothing.
+/* Tests that a model is not given to a card that lacks one feature that the model needs. Owns nothing.
  */
 #ifndef SINEW_TLED_CHOICE_H
 #define SINEW_TLED_CHOICE_H

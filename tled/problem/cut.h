@@ -56,7 +56,7 @@ int border_borrow(tled_problem *p, const model *m, err *e);
 /* numbers: tled_border's. */
 border_parts border_parts_of(const tled_problem *p, int64_t element, const double *numbers);
 
-/* Has them of a share of the element, by which forces go. */
+/* Scales the parts by a share of the element, as its forces are. */
 border_parts border_parts_by(border_parts parts, const tled_problem *p, double share);
 
 /* At given modes; parts' law becomes what is at the mean F, as of laminate_held. */

@@ -96,21 +96,21 @@ static double fibred_square_at_rest(const tled_problem *p, int64_t element, cons
     return step_below(&a, highest) ? highest : step_largest(&a);
 }
 
-/* Likewise of one that is cut; muscles add no more than what they do to a whole one, raised as the law is. */
-/* What curved muscles add; moments: NULL where it is not cut. */
-static double muscles_of_cut(const tled_problem *p, int64_t element, const float *moments)
+/* What curved muscles add to the square; moments: NULL where the element is whole. */
+static double muscles_at_rest(const tled_problem *p, int64_t element, const float *moments)
 {
     const double raises = moments ? cut_raises(p, element, moments) : 1;
     return p->curved ? raises * square_of_muscles(p, element) : 0;
 }
 
+/* Likewise of one that is cut; muscles add no more than what they do to a whole one, raised as the law is. */
 static double cut_square_at_rest(const tled_problem *p, int64_t element, const float *moments, step_fibres *fibres,
                                  double highest)
 {
     const element_tensor rest = {0};
     const tled_law law = tled_law_of(p, element);
     const stability_twists whole = {law.twists, 0}, t = cut_twists(p, element, moments, whole);
-    const double muscles = muscles_of_cut(p, element, moments);
+    const double muscles = muscles_at_rest(p, element, moments);
     step_matrix a;
     fibres->own = fibres->other = (element_fibre){.tension = 0};
     step_matrix_of(p, &law, rest, fibres, &a);
@@ -128,7 +128,7 @@ static double higher(const tled_problem *p, int64_t element, double highest)
     step_fibres fibres = step_fibres_of(p, element, NULL);
     if (border)
         return fmax(highest,
-                    border_square_at_rest(p, element, border, &fibres, highest) + muscles_of_cut(p, element, moments));
+                    border_square_at_rest(p, element, border, &fibres, highest) + muscles_at_rest(p, element, moments));
     if (moments)
         return fmax(highest, cut_square_at_rest(p, element, moments, &fibres, highest));
     return fmax(highest,
@@ -143,7 +143,7 @@ double step_element_at_rest(const tled_problem *p, int64_t element)
     const tled_law law = tled_law_of(p, element);
     const step_fibres fibres = step_fibres_of(p, element, NULL);
     if (border)
-        return border_square_at_rest(p, element, border, &fibres, INFINITY) + muscles_of_cut(p, element, moments);
+        return border_square_at_rest(p, element, border, &fibres, INFINITY) + muscles_at_rest(p, element, moments);
     double square = square_at_rest(p, element);
     if (fibres.sets.count)
         square = fmax(law.twists, step_range_of(p, &law, rest, &fibres).high);
