@@ -373,7 +373,7 @@ static bool divide(const shares *s, int64_t i, int64_t samples, pair *p)
 }
 
 /* Where something that is no layer lies among layers, as a muscle: that and the largest layer, as which all count, or
- * what is below them. False: there are none of the one or the other. */
+ * what is below them. False: there are none of the one or the other, or a second muscle has more than all layers. */
 static bool gather(const shares *s, int64_t i, pair *p)
 {
     int64_t other = -1, layer = -1;
@@ -391,6 +391,8 @@ static bool gather(const shares *s, int64_t i, pair *p)
     if (other < 0 || layer < 0)
         return false;
     const double own = samples_of(s, other, i);
+    if (depth_of(s, p->first) < 0 && depth_of(s, p->second) < 0 && samples_of(s, p->second, i) > count)
+        return false;
     *p = own > count ? (pair){.first = other, .second = layer, .mixture = count / (own + count)}
                      : (pair){.first = layer, .second = other, .mixture = own / (own + count)};
     p->among = layer;
@@ -401,10 +403,8 @@ static pair find_pair(const shares *s, int64_t i, int64_t samples)
 {
     pair p = {.first = largest(s, i, -1), .among = -1}, better;
     p.second = largest(s, i, p.first);
-    if (p.second < 0)
+    if (p.second < 0 || gather(s, i, &p))
         return p;
-    if (gather(s, i, &better))
-        return better;
     const double own = samples_of(s, p.first, i), other = samples_of(s, p.second, i);
     p.mixture = other / (own + other);
     if (s->rule.borders && own + other < (double)samples && deepest(s, i) >= 0 && divide(s, i, samples, &better))

@@ -6,7 +6,7 @@
  * proportion. As a laminate, of tissue in three layers and more, it is mixed of the stiffest and the softest; samples
  * of others are divided between these so that side by side all have the stiffness that they had, and, as they stay
  * where they are, the same in bending: of modulus m by (m - m_1)/(m_2 - m_1). Beside what is no layer,
- * as a muscle, all layers are one volume, that of the largest.
+ * as a muscle, all layers are one volume, that of the largest, unless a second muscle has more than all of them.
  *
  * The error of a share: where a plane cuts a voxel, each column of parts along the axis that it faces most is off by no
  * more than half a part, so the voxel by no more than 1 / (2 N). Over planes at random the root mean square is 0.066,

@@ -80,6 +80,23 @@ box muscle_thick 1 1 0.4 3 3 2.3 >>"$T/thick.obj"
 vox -s 1 --origin 0,0,0 --fraction 10 --layers "$T/layers" "$T/thick.obj"
 is "$(awk '$1 == "array" { on = $2; n = 0; next } /^[a-z]/ { on = "" } on == "element.volume" { v[n++] = $1 }
     on == "element.mix" && $1 >= 0 { print v[n], $1 } on == "element.mix" { n++ }' "$T/m" | sort | uniq -c | tr -s ' ' | tr '\n' ' ')" " 4 1 2  4 2 1 " "a layer's share of a muscle's voxels"
+# Two muscles that share voxels with a little of the skin: layers take nothing of either.
+{
+    box skin 0 0 0 8 8 8
+    box muscle_a 1 1 4 7 3.9 6
+    box muscle_b 1 4.1 4 7 7 6
+} >"$T/two_muscles.obj"
+printf 'top thickness=0.5mm\n' >"$T/layers"
+pairs() {
+    awk '$1 == "array" { on = $2; n = 0; next } /^[a-z]/ { on = "" } on == "volume.name" { name[n++] = $1 }
+        on == "element.volume" { v[n++] = $1 } on == "element.mix" { if ($1 >= 0) mix[n] = $1; n++ }
+        END { for (i in mix) { a = name[v[i]]; b = name[mix[i]]; if (a > b) { c = a; a = b; b = c } if (a ~ /muscle/ && b ~ /muscle/) print a, b } }' "$T/m" | sort | uniq -c | tr -s ' ' | tr '\n' ' '
+}
+vox -s 2 --origin 0,1,0 --fraction 10 "$T/two_muscles.obj"
+without=$(pairs)
+is "$without" " 2 \"muscle_a\" \"muscle_b\" " "two muscles in a voxel"
+vox -s 2 --origin 0,1,0 --fraction 10 --layers "$T/layers" "$T/two_muscles.obj"
+is "$(pairs)" "$without" "and with layers too"
 
 # What each volume has, of a ball in a ball: its shares come to it, where whole voxels do not.
 awk -v r=100 -v n=96 -v g=skin -f tests/cli/sphere.awk >"$T/two.obj"
