@@ -38,7 +38,7 @@ struct depths {
     atomic_bool failed;
     int samples; /* of a voxel, along a side; 0: cells are voxels, of which all of a centre's step are */
     double spread[DEPTHS_SAMPLES * DEPTHS_SAMPLES];
-    double blur; /* how far from its centre's depth a sample's may be taken */
+    double blur; /* how far from its centre's depth a sample's may be taken: a sample's diagonal */
 };
 
 typedef struct depths work;
@@ -286,6 +286,7 @@ static uint8_t find_sample(const search *s, const box *b, const ball *c, int64_t
 {
     const work *w = s->w;
     static const double by[3] = {1e-7, 1e-9, 1e-11};
+    const double *h = w->g->spacing;
     double p[3], nearest[3], width = 0, nudge = 0;
     const double *corner = &w->s->corner[9 * (int64_t)s->triangle[first]];
     double distance = sqrt(closest_triangle(corner, corner + 3, corner + 6, c->middle, nearest));
@@ -301,11 +302,11 @@ static uint8_t find_sample(const search *s, const box *b, const ball *c, int64_t
     }
     for (int a = 0; a < 3; a++) {
         const double along = (c->middle[a] - nearest[a]) / distance;
-        width += w->g->spacing[a] * fabs(along);
+        width += h[a] * fabs(along);
         nudge += along * by[a];
     }
     if (!(width > 0)) /* it lies on the surface */
-        return step_of(w, w->blur * spread_at(w, b->low) / 3);
+        return step_of(w, (h[0] + h[1] + h[2]) * spread_at(w, b->low) / 3);
     distance = fmax(0, distance + width * nudge); /* as centres on the surface are taken for inside or not */
     return step_of(w, width * (floor(distance / width) + spread_at(w, b->low)));
 }
@@ -348,12 +349,11 @@ static int look(search *s, const box *b, int64_t from, int64_t to, err *e) // NO
         return 0;
     int64_t first = find_first(s, &c, from, to);
     double near = distance_of(s, &c, first), slack = slack_of(&c, near);
-    if (single) {
-        fill_box(s, b, w->samples ? find_sample(s, b, &c, first, from, to) : find_step(s, &c, near, from, to));
-        return 0;
-    }
     uint8_t step = step_of(w, near + c.radius + slack + w->blur);
-    if (step == step_of(w, s->least[first] - c.radius - slack - w->blur)) {
+    const bool alike = step == step_of(w, s->least[first] - c.radius - slack - w->blur);
+    if (!alike && single)
+        step = w->samples ? find_sample(s, b, &c, first, from, to) : find_step(s, &c, near, from, to);
+    if (alike || single) {
         fill_box(s, b, step);
         return 0;
     }
@@ -501,11 +501,11 @@ depths *depths_create(const double *depth, int64_t count, const depths_surface *
     work *w = mem_array(1, sizeof *w, "depths", e);
     if (!w)
         return NULL;
+    const double *h = g->spacing;
     *w = (work){.depth = depth, .depths = count, .s = s, .g = g, .samples = samples};
-    for (int a = 0; a < 3; a++) {
+    w->blur = sqrt(h[0] * h[0] + h[1] * h[1] + h[2] * h[2]);
+    for (int a = 0; a < 3; a++)
         w->all.low[a] = g->low[a], w->all.high[a] = g->high[a];
-        w->blur += g->spacing[a];
-    }
     make_spread(w);
     if (!make_bins(w, e))
         return w;

@@ -171,7 +171,7 @@ static void test_samples(scene *s)
         make_scene(s);
         for (int a = 0; a < 3; a++)
             s->g.low[a] = 0, s->g.high[a] = SIDE;
-        const double width = s->g.spacing[0] + s->g.spacing[1] + s->g.spacing[2];
+        const double *h = s->g.spacing, width = sqrt(h[0] * h[0] + h[1] * h[1] + h[2] * h[2]) * (1 + 1e-6);
         depths *d = depths_create(s->depth, s->depths, &s->s, &s->g, SAMPLES, &e);
         memset(step, 0, sizeof step);
         failed += !d || !look(d, step);
