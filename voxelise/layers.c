@@ -337,6 +337,12 @@ double layers_thickness(const layers *l, int64_t layer)
     return l->layer[layer].thickness;
 }
 
+bool layers_is_thin(const layers *l, int64_t layer, const grid *g)
+{
+    static const double rounding = 1e-9; /* lengths that differ by less than this share are equal */
+    return layers_thickness(l, layer) < grid_longest(g) * (1 - rounding);
+}
+
 /* ---- normals */
 
 enum { CHUNK = 1024 }; /* elements */

@@ -57,4 +57,7 @@ int64_t layers_at(const layers *l, const volumes *plan, int32_t volume);
 /* How thick one is, in the OBJ's unit. */
 double layers_thickness(const layers *l, int64_t layer);
 
+/* Whether it is thinner than a voxel is long. g: the lattice of voxels. */
+bool layers_is_thin(const layers *l, int64_t layer, const grid *g);
+
 #endif

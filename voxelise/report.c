@@ -281,31 +281,46 @@ void report_layer(notes *n, const layers *l, int64_t layer, int32_t volume, cons
               which, thickness, name, side, name, what, thickness, name);
 }
 
-void report_layer_share(notes *n, const layers *l, int64_t layer, const climb_count *count, bool laminates,
+/* What is wrong with a layer by shares, other than that it is divided; "" if nothing is. */
+static void say_share(char *to, size_t size, const climb_count *count, bool thin, bool laminates, double in_samples)
+{
+    *to = 0;
+    if (!count->inside)
+        snprintf(to, size, "no sample of the voxels is in it, so it has no element");
+    else if (!count->kept && !count->mixed && !count->divided)
+        snprintf(to, size, "it has no element, as two other volumes have more of each voxel");
+    else if (thin && !laminates)
+        snprintf(to, size,
+                 "its elements have moduli between those of what they are mixed of, so it is too soft along itself, "
+                 "which --mixed laminate mends");
+    else if (in_samples < .5)
+        snprintf(to, size,
+                 "it is less than half as thick as samples of voxels are apart, so it is too soft; more samples "
+                 "(--fraction %d at most) mend that",
+                 SHARES_MOST);
+}
+
+bool report_layer_share(notes *n, const layers *l, int64_t layer, const climb_count *count, bool laminates,
                         int64_t samples, const grid *g, num_unit unit)
 {
     const double thickness = layers_thickness(l, layer), side = grid_longest(g);
+    const bool thin = layers_is_thin(l, layer, g);
     const char *name = num_unit_name(unit), *which = l->layer[layer].name;
-    char why[200] = "";
-    if (!count->inside)
-        snprintf(why, sizeof why, "no sample of the voxels is in it, so it has no element");
-    else if (!laminates)
-        snprintf(
-            why, sizeof why,
-            "its elements have moduli between those of what they are mixed of, so it is too soft along itself, which "
-            "--mixed laminate mends");
-    else if (thickness < .5 * side / (double)samples)
-        snprintf(why, sizeof why, "it is less than half as thick as samples of voxels are apart, so it is too soft");
-    else if (count->divided)
-        snprintf(
-            why, sizeof why,
-            "%lld elements of three layers and more are laminates of the stiffest and the softest, and as stiff along "
-            "layers and in bending as with it",
-            (long long)count->divided);
-    if (*why)
+    char why[256];
+    say_share(why, sizeof why, count, thin, laminates, thickness * (double)samples / side);
+    if (*why && thin)
         notes_add(n,
                   "layer %s is %.4g %s thick, less than a voxel of %.4g %s: %s; voxels of at most %.4g %s resolve it",
                   which, thickness, name, side, name, why, thickness, name);
+    else if (*why)
+        notes_add(n, "layer %s is %.4g %s thick: %s", which, thickness, name, why);
+    if (count->divided)
+        notes_add(n,
+                  "layer %s is %.4g %s thick, and %lld elements of three layers and more are laminates of the stiffest "
+                  "and the softest, which keep its stiffness in shear but not its density; smaller voxels keep the "
+                  "layers apart",
+                  which, thickness, name, (long long)count->divided);
+    return *why || count->divided;
 }
 
 static const char *plural_of(int64_t count)

@@ -52,9 +52,9 @@ void report_gaps(notes *n, const gaps *found, const grid *g, double least, num_u
 void report_layer(notes *n, const layers *l, int64_t layer, int32_t volume, const voxels *x, const grid *g,
                   num_unit unit);
 
-/* Likewise by shares: where its elements are not right, or nothing. count: of its volume; laminates: with these;
- * samples: of a voxel, along a side. */
-void report_layer_share(notes *n, const layers *l, int64_t layer, const climb_count *count, bool laminates,
+/* Notes what is not right with a layer by shares, of any thickness. count: of its volume; laminates: with these;
+ * samples: of a voxel, along a side. Whether something is. */
+bool report_layer_share(notes *n, const layers *l, int64_t layer, const climb_count *count, bool laminates,
                         int64_t samples, const grid *g, num_unit unit);
 
 /* Says how many nodes and elements slits have added; nothing where they have added none. */

@@ -122,9 +122,6 @@ double summary_enclosed(const voxels *x)
 
 /* ---- warnings */
 
-/* Lengths that differ by less than this share are equal. */
-static const double rounding = 1e-9;
-
 /* Warns of what is wrong with one volume alone. Whether something is. */
 static bool warn_of(const summary *s, int32_t v, notes *warnings)
 {
@@ -132,10 +129,9 @@ static bool warn_of(const summary *s, int32_t v, notes *warnings)
     const climb_count *n = &s->x->count[v];
     const int64_t layer = layers_at(s->layer, s->plan, v);
     const char *counted = s->x->fraction ? "sample" : "voxel";
-    const bool thin = layer >= 0 && layers_thickness(s->layer, layer) < grid_longest(s->g) * (1 - rounding);
-    if (thin && s->x->fraction)
-        report_layer_share(warnings, s->layer, layer, n, s->laminates, s->samples, s->g, s->unit);
-    else if (thin)
+    if (layer >= 0 && s->x->fraction)
+        return report_layer_share(warnings, s->layer, layer, n, s->laminates, s->samples, s->g, s->unit);
+    if (layer >= 0 && layers_is_thin(s->layer, layer, s->g))
         report_layer(warnings, s->layer, layer, v, s->x, s->g, s->unit);
     else if (n->inside == 0)
         notes_add(warnings,

@@ -173,6 +173,12 @@ printf 'a thickness=0.5\nb thickness=0.3 material=b\n' >"$T/layers"
 printf 'tissue E=3000\na E=9000\nb E=5000\n' >"$T/materials"
 is "$(layers -s 1 --fraction 8 --mixed laminate --layers "$T/layers" --materials "$T/materials" "$T/box.obj" | grep -c '^b is 0.3 mm thick, .* elements of three layers and more')" 1 \
     "three layers in one voxel"
+printf 'a thickness=0.6\nb thickness=0.05 material=b\nc thickness=1.2\n' >"$T/layers"
+is "$(layers -s 1 --fraction 8 --layers "$T/layers" --materials "$T/materials" "$T/box.obj" | grep -c '^b is 0.05 mm thick, .* it has no element, as two other volumes')" 1 "one that two others leave no element"
+printf 'a thickness=0.1\nb thickness=1.1 material=b\n' >"$T/layers"
+awk -v r=6 -v n=24 -v g=skin -f tests/cli/sphere.awk >"$T/ball.obj"
+is "$(layers -s 1 --fraction 8 --mixed laminate --layers "$T/layers" --materials "$T/materials" "$T/ball.obj" | grep -c '^b is 1.1 mm thick, and .* elements of three layers and more')" 1 \
+    "a layer thicker than a voxel may lie in one with two others, too"
 
 # ---- the real face: lips that stand 3 mm apart in the middle and touch at the corners of the mouth
 
