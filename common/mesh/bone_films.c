@@ -137,6 +137,10 @@ int bone_films_make(bone_films *to, const element_mesh *mesh, const model *m, er
         return 0;
     if (!mesh->is_lattice)
         return err_set(e, NULL, 0, "bone.element is of elements without a lattice; expected a lattice's boxes");
+    const model_array *film = model_find(m, "film.element");
+    if (film && film->rows && !(model_find(m, "bone.element") && model_find(m, "bone.element")->rows))
+        return err_set(e, NULL, 0, "film.element has %lld rows and bone.element none; expected some of both",
+                       (long long)film->rows);
     return borrow(to, mesh, m, e) || take_normals(to, m, e) || find_slopes(to, mesh, e) ? -1 : 0;
 }
 
