@@ -69,7 +69,6 @@ typedef struct cuda_march {
     alignas(16) march_hold held; /* physical: of plain cells, as are: */
     alignas(16) march_more more;
     alignas(16) march_family family;
-    int32_t curved;                 /* whether any cell's more.slope has more than two numbers */
     const uint2 *along, *tip_along; /* march's */
     alignas(16) march_side side[3];
     float slope[3], area[3]; /* element_shape's, along the march's axes; area: in the unit of force */

@@ -145,7 +145,7 @@ typedef struct bent {
     float slope, shear, slope_of_shear; /* 2 f'(x); T/T(0); its slope, over V' */
 } bent;
 
-/* Powers from k on. */
+/* c[0] + c[1] x + ... */
 template <int COUNT> static __device__ __forceinline__ float series(const float *c, float x)
 {
     float sum = c[COUNT - 1];
@@ -155,20 +155,15 @@ template <int COUNT> static __device__ __forceinline__ float series(const float 
     return sum;
 }
 
-/* By y = x/3. No cell: y is -1, so that all is finite. */
-static __device__ __forceinline__ bent bent_of(const cuda_march &m, const march_more &c, const stretch &s)
+/* By y = x/3. No cell: y is -1, so that all is finite. To ask how many powers there are would take longer than these. */
+static __device__ __forceinline__ bent bent_of(const march_more &c, const stretch &s)
 {
     bent b;
     const float root = near_exp2(near_log2(s.j) * (-2.f / 3)), y = root * s.third + (root - 1);
     b.scale = root * near_inverse(s.j);
-    b.slope = series<2>(c.slope, y);
-    b.shear = 1 + y * c.shear[0];
-    b.slope_of_shear = c.rise[0];
-    if (m.curved) {
-        b.slope += y * y * series<MARCH_POWERS - 2>(c.slope + 2, y);
-        b.shear += y * y * series<MARCH_POWERS - 2>(c.shear + 1, y);
-        b.slope_of_shear += y * series<MARCH_POWERS - 2>(c.rise + 1, y);
-    }
+    b.slope = series<MARCH_POWERS>(c.slope, y);
+    b.shear = 1 + y * series<MARCH_POWERS - 1>(c.shear, y);
+    b.slope_of_shear = series<MARCH_POWERS - 1>(c.rise, y);
     return b;
 }
 

@@ -317,7 +317,6 @@ static void hold_plain(cuda_state *s)
     march_hold *to = &s->walk.held;
     to->log_mu = (float)log2(weight * more_plain(p, &plain->law, weight, &s->walk.more));
     to->press = (float)(weight * plain->law.bulk / (64 * volume));
-    s->walk.curved = s->march.curved;
     if (p->fibres.of)
         family_plain(&s->march, p, weight, &s->walk.family);
     to->bending = 1;

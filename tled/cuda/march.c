@@ -309,7 +309,6 @@ static int mark_special(cutter *c)
         return -1;
     for (int64_t i = 0; i < p->elements; i++) {
         const march_cell cell = march_cell_of(c->m, p, i);
-        c->m->curved |= cell.more[0] != 0 || cell.more[1] != 0 || cell.more[2] != 0;
         for (int k = march_cell_special(c->m, p, i, &cell) ? cell_spots(c, i, at) : 0; k--;)
             c->special[at[k].layer] = true;
     }

@@ -93,7 +93,6 @@ typedef struct march {
     march_cell *cell;
     march_cut *cut; /* cuts: of the first of these cells, which are the cut ones */
     int64_t cuts;
-    bool curved;     /* some cell has a `more` that is not 0, or would have it if it were special */
     int families;    /* of fibres that resist being stretched, the most of a cell */
     uint32_t *along; /* ((layers + MARCH_AHEAD) x MARCH_THREADS + tips x 8) x 2: the directions of cells' and of
                       * tips' elements' (march_cells.h); NULL: there are none */
