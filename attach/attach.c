@@ -11,6 +11,7 @@
 #include "model/stage.h"
 #include "muscle.h"
 #include "part.h"
+#include "slide.h"
 #include "surface/surface.h"
 
 #include <stdio.h>
@@ -19,7 +20,7 @@
 
 struct options {
     opt_common common;
-    opt_list rigid, part, fibre, lines_in;
+    opt_list rigid, part, fibre, lines_in, slide, slide_off;
     const char *rigid_file, *lines;
     double strictness;
     bool surface, report;
@@ -37,6 +38,10 @@ static const opt option_list[] = {
      "fix nodes this near to a surface, up to 1 [voxel sides; default 0.75]"},
     {OPT_ACTION, 0, "surface", NULL, OPT_FLAG, TO(surface), 0, 0, NULL, 0,
      "hold elements at the surface itself, by films of tissue, in place of nodes near it"},
+    {OPT_ACTION, 0, "slide", "SURFACE,...[:REGION]", OPT_LIST, TO(slide), 0, 0, NULL, OPT_NAMED,
+     "nodes held there slide on the bone; region: FILE.obj or X0,Y0,Z0,X1,Y1,Z1"},
+    {OPT_ACTION, 0, "slide-off", "SURFACE,...[:REGION]", OPT_LIST, TO(slide_off), 0, 0, NULL, OPT_NAMED,
+     "the same, and may come off the bone"},
     {OPT_ACTION, 0, "fibre", "[MUSCLES=]RULE", OPT_LIST, TO(fibre), 0, 0, MUSCLE_RULE_NAMES "|@muscle.name=", 0,
      "how fibres run: " MUSCLE_RULE_NAMES " [default auto]"},
     {OPT_ACTION, 0, "fibre-lines", "FILE.obj", OPT_TEXT, TO(lines), 0, 0, NULL, OPT_FILE,
@@ -139,6 +144,20 @@ static int hold_surface(const tool *t, model *m, const rigid *r, notes *warnings
     return 0;
 }
 
+/* Nodes slide once all is known that they are rigid for. */
+static int let_slide(const struct options *o, const tool *t, model *m, const rigid *r, pool *threads, notes *warnings,
+                     err *e)
+{
+    const slide_options how = {&o->slide, &o->slide_off};
+    slide_found found;
+    if (slide_make(m, r, &how, threads, &found, warnings, e))
+        return -1;
+    if (found.nodes)
+        tool_say(t, "%lld nodes slide on bone, at most %.3g voxels away from it, by %lld distance field%s",
+                 (long long)found.nodes, found.worst, (long long)found.fields, found.fields == 1 ? "" : "s");
+    return 0;
+}
+
 static int work(const struct options *o, const tool *t, model *m, notes *warnings, err *e)
 {
     rigid r = {0};
@@ -153,7 +172,7 @@ static int work(const struct options *o, const tool *t, model *m, notes *warning
     if (!threads || collect(o, m, &file, &r, warnings, e) || anchor_nodes(m, &r, o->strictness, warnings, e) ||
         part_make(m, &o->part, warnings, e) || muscle_make(m, &o->fibre, threads, &list, warnings, e) ||
         (o->lines && fibre_lines_apply(m, o->lines, &o->lines_in, threads, e)) ||
-        (o->surface && hold_surface(t, m, &r, warnings, e)))
+        let_slide(o, t, m, &r, threads, warnings, e) || (o->surface && hold_surface(t, m, &r, warnings, e)))
         goto out;
     check_held(&r, warnings);
     say_rules(t, &list);
@@ -174,6 +193,8 @@ static int check_options(const struct options *o, err *e)
         return err_usage(e, "--rigid-file -: standard input is the model's; expected the name of a file");
     if (o->lines && !strcmp(o->lines, "-"))
         return err_usage(e, "--fibre-lines -: standard input is the model's; expected the name of a file");
+    if (o->surface && (o->slide.count || o->slide_off.count))
+        return err_usage(e, "--surface with --slide: films hold all of what they touch; expected one of them");
     if (o->lines_in.count && !o->lines)
         return err_usage(e, "--fibre-lines-in needs --fibre-lines FILE.obj, which has the lines");
     return fibre_rules_check(&o->fibre, e);

@@ -130,6 +130,20 @@ typedef struct known {
     X("film.share", MODEL_F32, "1", "film", 1, 1, 0, KNOWN_FROM, 0, 1, "attach", "that part of its volume")            \
     X("film.moments", MODEL_F32, "1", "film", 7, 7, 0, KNOWN_FROM, -1, 1, "attach",                                    \
       "means over that part, as cut.moments")                                                                          \
+    X("slide.node", MODEL_I32, "@node", "slide", 1, 1, KNOWN_EVERY, KNOWN_ANY, 0, 0, "attach",                         \
+      "node that slides on bone; ascending")                                                                           \
+    X("slide.field", MODEL_I32, "@field", "slide", 1, 1, KNOWN_EVERY, KNOWN_ANY, 0, 0, "attach",                       \
+      "distance field of that bone")                                                                                   \
+    X("slide.lifts", MODEL_U8, "1", "slide", 1, 1, 0, KNOWN_FROM, 0, 1, "attach",                                      \
+      "1 = it may come off the bone, 0 = it keeps its distance from it")                                               \
+    X("field.body", MODEL_I32, "@body", "field", 1, 1, 0, KNOWN_ANY, 0, 0, "attach",                                   \
+      "rigid body that the field moves with, -1 = none")                                                               \
+    X("field.first", MODEL_I32, "1", "field", 3, 3, 0, KNOWN_ANY, 0, 0, "attach",                                      \
+      "corner of the lattice where its first sample is: i, j, k")                                                      \
+    X("field.samples", MODEL_I32, "1", "field", 3, 3, 0, KNOWN_FROM, 2, INT32_MAX, "attach",                           \
+      "samples along x, y and z, a voxel apart")                                                                       \
+    X("distance.value", MODEL_F32, "m", "distance", 1, 1, 0, KNOWN_FINITE, 0, 0, "attach",                             \
+      "distance from the bone, above 0 in the tissue: field after field, x fastest, then y")                           \
     X("probe-vertex.position", MODEL_F64, "m", "probe-vertex", 3, 3, 0, KNOWN_FINITE, 0, 0, "msds-run or tled-run",    \
       "of a convex probe: a corner, in the probe's frame")                                                             \
     X("probe-face.vertex", MODEL_I32, "@probe-vertex", "probe-face", 3, 3, KNOWN_EVERY, KNOWN_ANY, 0, 0,               \

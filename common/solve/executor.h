@@ -23,7 +23,8 @@
     X(FIBRES, "fibres that resist being stretched")                                                                    \
     X(CUTS, "mean strain of cut elements")                                                                             \
     X(BORDERS, "laminates of two volumes")                                                                             \
-    X(FILMS, "films on bone (attach --surface)")
+    X(FILMS, "films on bone (attach --surface)")                                                                       \
+    X(SLIDING, "nodes that slide on bone (attach --slide)")
 
 enum executor_feature {
 #define EXECUTOR_NUMBER(name, words) EXECUTOR_NUMBER_##name,

@@ -7,6 +7,7 @@
  * they are cut: the same bytes for any number of threads, and in any of the processor's instruction sets.
  */
 #include "base/mem.h"
+#include "tled/contact/sliding.h"
 #include "tled/cpu/cpu_pass.h"
 #include "tled/problem/collider.h"
 #include "tled/problem/conforming.h"
@@ -138,6 +139,7 @@ static void press_followers(cpu_state *s)
 }
 
 #include "tled/cpu/cpu_films.h"
+#include "tled/cpu/cpu_sliding.h"
 
 /* One pass at the displacements of now, with the curves' values of now and of the step's end. */
 static void run_pass(cpu_state *s, const tled_plan *plan, double time, int what)
@@ -164,6 +166,8 @@ static void run_pass(cpu_state *s, const tled_plan *plan, double time, int what)
     if (s->p->films)
         strain_films(s);
     s->method->pass(s);
+    if (s->p->sliding)
+        move_sliding(s);
     s->spare_is_internal = (what & PASS_INTERNAL) != 0;
     if (what & PASS_BEGIN) {
         number *swap = s->field[TLED_DISPLACEMENT];
@@ -443,6 +447,8 @@ static void fill_flags(cpu_state *s)
             s->flags[s->rows.place[n]] |= (uint8_t)((p->hold[3 * n + a] == HOLD_FREE) * (NODE_FREE << a));
     for (int32_t i = 0; i < s->rows.extras; i++)
         s->flags[s->rows.extra[i]] |= NODE_EXTRA;
+    for (int64_t i = 0; p->sliding && i < p->sliding->count; i++)
+        s->flags[s->rows.place[p->sliding->node[i]]] |= NODE_EXTRA; /* which the pass leaves, as none is listed */
 }
 
 static void fill_nodes(cpu_state *s)
@@ -578,12 +584,13 @@ static int64_t cpu_computed(const cpu_state *s)
 
 enum { CPU_FEATURES = EXECUTOR_USUAL | EXECUTOR_CONTACT | EXECUTOR_FOLLOWERS };
 
-const tled_executor CPU_EXECUTOR = {.is = {.device = "cpu",
-                                           .features = CPU_FEATURES | EXECUTOR_BORDERS | EXECUTOR_FILMS,
-                                           .forms = (1U << FORM_STEPPED) - 1,
-                                           .unusable = cpu_unusable},
-                                    .create = boxes_create,
-                                    CPU_FUNCTIONS};
+const tled_executor CPU_EXECUTOR = {
+    .is = {.device = "cpu",
+           .features = CPU_FEATURES | EXECUTOR_BORDERS | EXECUTOR_FILMS | EXECUTOR_SLIDING,
+           .forms = (1U << FORM_STEPPED) - 1,
+           .unusable = cpu_unusable},
+    .create = boxes_create,
+    CPU_FUNCTIONS};
 
 const tled_executor CPU_EXECUTOR_OF_MESHES = {.is = {.device = "cpu",
                                                      .features = EXECUTOR_MESHES | CPU_FEATURES,

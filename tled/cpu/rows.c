@@ -1,6 +1,7 @@
 #include "tled/cpu/rows.h"
 
 #include "base/mem.h"
+#include "tled/contact/sliding.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -225,6 +226,8 @@ static int cut_slab(builder *b, int32_t which, int64_t *node, int64_t *element)
 bool rows_is_extra(const tled_problem *p, int64_t n)
 {
     const int32_t *hold = p->hold + 3 * n;
+    if (p->sliding && p->sliding->row[n] >= 0)
+        return false;
     return p->force_start[n + 1] > p->force_start[n] || hold[0] >= 0 || hold[1] >= 0 || hold[2] >= 0;
 }
 

@@ -55,7 +55,7 @@ typedef struct rows {
     int32_t *extra_node; /* extras: which of the model's nodes */
 } rows;
 
-/* Whether the script displaces or pushes a node. */
+/* Whether the script displaces or pushes a node that does not slide. */
 bool rows_is_extra(const tled_problem *p, int64_t node);
 
 /* Lists the extras again, once places and slabs are known. -1 with e filled. */

@@ -153,6 +153,16 @@ static element_field pull_of(const tled_problem *p, int64_t element, const bodie
                                 sets.count);
 }
 
+void bodies_pull(const tled_problem *p, int64_t element, const bodies_state *now, double pull[8][3])
+{
+    const element_field f = pull_of(p, element, now);
+    for (int c = 0; c < 8; c++) {
+        pull[c][0] = f.x.at[c];
+        pull[c][1] = f.y.at[c];
+        pull[c][2] = f.z.at[c];
+    }
+}
+
 /* ---- films */
 
 /* What a body's films hang on: their points as the bone has them at rest, and how these have moved. */
@@ -303,16 +313,23 @@ static void element_work(void *context, int64_t chunk, int64_t from, int64_t to)
     }
 }
 
+bool bodies_middle(const tled_problem *p, int32_t body, const double *displacement, double middle[3])
+{
+    const bodies *b = p->bodies;
+    const int64_t count = b->start[body + 1] - b->start[body];
+    middle[0] = middle[1] = middle[2] = 0;
+    for (int64_t k = b->start[body]; k < b->start[body + 1]; k++)
+        for (int a = 0; a < 3; a++) {
+            const int64_t at = 3 * (int64_t)b->node[k] + a;
+            middle[a] += (p->position[at] + displacement[at]) / (double)count;
+        }
+    return count > 0;
+}
+
 static void find_middles(const summing *s)
 {
-    const bodies *b = s->p->bodies;
-    for (int32_t i = 0; i < b->count; i++)
-        for (int64_t k = b->start[i]; k < b->start[i + 1]; k++) {
-            double x[3];
-            place_of(s, b->node[k], x);
-            for (int a = 0; a < 3; a++)
-                s->middle[3 * i + a] += x[a] / (double)(b->start[i + 1] - b->start[i]);
-        }
+    for (int32_t i = 0; i < s->p->bodies->count; i++)
+        bodies_middle(s->p, i, s->now->displacement, s->middle + 3 * (int64_t)i);
 }
 
 static void add_external(const summing *s, body_load *to)
@@ -401,6 +418,8 @@ int bodies_add(const tled_problem *p, pool *threads, const bodies_state *now, fr
         memcpy(to[2] + 3 * (int64_t)i, load[i].torque, sizeof load[i].torque);
     }
     for (int32_t i = 0; !failed && !p->films && i < b->count; i++) {
+        if (b->start[i] == b->start[i + 1])
+            continue;
         const pose at = pose_fit(p->position, now->displacement, b->node + b->start[i], b->start[i + 1] - b->start[i]);
         pose_to_row(&at, to[0] + 7 * (int64_t)i);
     }

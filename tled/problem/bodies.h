@@ -42,6 +42,12 @@ typedef struct bodies_state {
     const double *value, *displacement, *contractile[2];
 } bodies_state;
 
+/* What an element pulls its corners with, N. */
+void bodies_pull(const tled_problem *p, int64_t element, const bodies_state *now, double pull[8][3]);
+
+/* The mean of a body's nodes as they are; false, and 0, where it has none, as all that it holds slides on it. */
+bool bodies_middle(const tled_problem *p, int32_t body, const double *displacement, double middle[3]);
+
 /* Fills `to`, one for each body. -1 with e filled. */
 int bodies_loads(const tled_problem *p, pool *threads, const bodies_state *now, body_load *to, err *e);
 

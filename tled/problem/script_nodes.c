@@ -111,10 +111,20 @@ int script_nodes_of_surface(script *s, const model *m, const keyfile *k, const s
                  : keyfile_error(k, e, "no node is held by '%.200s'; expected a surface that holds some", c->target);
 }
 
+/* Whether nodes slide on a body, which then need not hold any. */
+static bool slides_on(const model *m, int32_t body)
+{
+    const model_array *of = model_find(m, "field.body");
+    for (int64_t i = 0; of && i < of->rows; i++)
+        if (of->i32[i] == body)
+            return true;
+    return false;
+}
+
 int script_nodes_of_body(script *s, const model *m, const keyfile *k, int32_t body, err *e)
 {
     const model_array *of = model_need(m, "node.body", e);
-    int64_t found = 0;
+    int64_t found = slides_on(m, body);
     if (is_by_films(m) && add_films(s, m, "bone.body", NULL, body, &found, e))
         return -1;
     for (int64_t i = 0; of && !is_by_films(m) && i < of->rows; i++) {

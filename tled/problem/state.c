@@ -423,6 +423,13 @@ static void make_holds(tled_problem *p, const model *m)
         p->held += p->hold[3 * n] != HOLD_FREE || p->hold[3 * n + 1] != HOLD_FREE || p->hold[3 * n + 2] != HOLD_FREE;
 }
 
+static void find_slides(tled_problem *p, const model *m)
+{
+    const model_array *node = model_find(m, "slide.node");
+    p->slide = node ? node->i32 : NULL;
+    p->slides = node ? node->rows : 0;
+}
+
 int tled_problem_make(tled_problem *p, const model *m, const script *s, hourglass_control control, err *e)
 {
     lattice l;
@@ -449,6 +456,7 @@ int tled_problem_make(tled_problem *p, const model *m, const script *s, hourglas
     if (!boxes)
         conforming_join(p);
     make_holds(p, m);
+    find_slides(p, m);
     return 0;
 }
 

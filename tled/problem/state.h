@@ -91,6 +91,9 @@ typedef struct tled_problem {
     struct bodies *bodies;             /* the model's rigid bodies (bodies.h), owned; NULL: none */
     struct films *films;               /* of tissue on bone (films.h), owned; NULL: none */
     struct followers *followers;       /* the script's pressures (followers.h), owned; NULL: none */
+    struct sliding *sliding;           /* nodes that slide on bone (contact/sliding.h); NULL: none does */
+    const int32_t *slide;              /* slides: these nodes, borrowed */
+    int64_t slides;
 } tled_problem;
 
 /* A run of steps: after step i of them (from 1) the time is origin + (first + i) / rate. A rate, since a whole

@@ -1,6 +1,7 @@
 #include "tled/run/account.h"
 
 #include "base/mem.h"
+#include "tled/contact/sliding.h"
 #include "tled/problem/collider.h"
 #include "tled/problem/film_strain.h"
 #include "tled/problem/followers.h"
@@ -17,6 +18,7 @@ typedef struct moment {
     bool known;
     double *displacement, *internal, *push; /* nodes x 3; push: NULL without a probe */
     double *pressed;                        /* likewise, N: by pressures; NULL without */
+    sliding_load *bone;                     /* nodes that slide: what bone does to them; NULL without */
     double *stretch, *pull; /* elements x 2: of either fibre, and of springs in series, Pa; NULL without muscles */
     element_tensor *film;   /* films, Pa: their stress; NULL without, as is: */
     double *film_stretch;   /* films x 2: as stretch */
@@ -241,17 +243,36 @@ static void find_pressed(account *a)
         followers_pull(&a->followers, i, a->now.pressed + 3 * (int64_t)f->node[i]);
 }
 
+/* What bone does to a node that slides, and did since the moment before; less of net (3, N) is then left. */
+static void slide(account *a, int64_t n, double net[3], account_sums *sum)
+{
+    const int32_t row = a->p->sliding->row[n];
+    sliding_load *load = &a->now.bone[row];
+    *load = sliding_load_at(a->p, row, a->now.curves, a->now.displacement, net);
+    for (int i = 0; i < 3; i++)
+        net[i] += load->normal[i] + load->stuck[i];
+    if (!a->before.known)
+        return;
+    const sliding_moment was = {a->before.curves, a->before.displacement, &a->before.bone[row]};
+    const sliding_moment is = {a->now.curves, a->now.displacement, load};
+    sum->held += sliding_work(a->p, row, &was, &is);
+}
+
 static void add_node(account *a, int64_t n, struct account_part *part)
 {
     const tled_problem *p = a->p;
     const double mass = p->mass[n];
     const node_load is = load_of(p, &a->now, n);
     const node_load was = a->before.known ? load_of(p, &a->before, n) : is;
-    double way = 0, speed = 0;
+    double way = 0, speed = 0, net[3];
     if (p->collider)
         find_push(a, n);
+    for (int i = 0; i < 3; i++)
+        net[i] = is.gravity[i] + is.forces[i] - a->now.internal[3 * n + i];
+    if (p->sliding && p->sliding->row[n] >= 0)
+        slide(a, n, net, &part->sum);
     for (int64_t i = 3 * n; i < 3 * n + 3; i++) {
-        const double gap = is.gravity[i % 3] + is.forces[i % 3] - a->now.internal[i];
+        const double gap = net[i % 3];
         const double square = a->velocity[i] * a->velocity[i];
         part->sum.acceleration += p->hold[i] == HOLD_FREE ? gap * gap / mass : 0;
         part->driven += p->hold[i] >= 0 ? mass * square / 2 : 0;
@@ -403,6 +424,7 @@ static void copy_moment(const tled_problem *p, const moment *from, moment *to)
     to->pull = own.pull;
     to->curves = own.curves;
     to->film = own.film;
+    to->bone = own.bone;
     to->film_stretch = own.film_stretch;
     memcpy(to->displacement, from->displacement, size);
     memcpy(to->internal, from->internal, size);
@@ -411,6 +433,8 @@ static void copy_moment(const tled_problem *p, const moment *from, moment *to)
         memcpy(to->push, from->push, size);
     if (to->pressed)
         memcpy(to->pressed, from->pressed, size);
+    if (to->bone)
+        memcpy(to->bone, from->bone, (size_t)p->sliding->count * sizeof *to->bone);
     if (to->film)
         memcpy(to->film, from->film, (size_t)films_count(p) * sizeof *to->film);
     if (to->film_stretch)
@@ -473,6 +497,8 @@ static int make_moment(const tled_problem *p, moment *m, err *e)
         return -1;
     if (p->followers && make_numbers(p->nodes, 3, &m->pressed, e))
         return -1;
+    if (p->sliding && !(m->bone = mem_array(p->sliding->count, sizeof *m->bone, "the log", e)))
+        return -1;
     if (p->films && !(m->film = mem_array(films_count(p), sizeof *m->film, "the log", e)))
         return -1;
     if (p->films && contracts(p) && make_numbers(films_count(p), 2, &m->film_stretch, e))
@@ -485,6 +511,7 @@ static int make_moment(const tled_problem *p, moment *m, err *e)
 static void free_moment(moment *m)
 {
     free(m->film);
+    free(m->bone);
     free(m->film_stretch);
     free(m->displacement);
     free(m->internal);

@@ -7,6 +7,7 @@
 #include "base/num.h"
 #include "base/path.h"
 #include "model/rest_place.h"
+#include "tled/contact/sliding_loads.h"
 #include "tled/problem/bodies.h"
 #include "tled/problem/film_strain.h"
 
@@ -264,7 +265,9 @@ static int put_bodies(const run_log *l, err *e)
         return 0;
     body_load *load = mem_array(count, sizeof *load, "the log", e);
     const bodies_state now = account_bodies(l->account);
-    const int failed = load ? bodies_loads(l->p, l->threads, &now, load, e) : -1;
+    const int failed =
+        !load || bodies_loads(l->p, l->threads, &now, load, e) || sliding_loads(l->p, l->threads, &now, load, e) ? -1
+                                                                                                                 : 0;
     for (int64_t i = 0; !failed && i < 6 * count; i++)
         put_number(l->rows, i / 3 % 2 ? load[i / 6].torque[i % 3] : load[i / 6].force[i % 3]);
     free(load);

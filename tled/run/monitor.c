@@ -1,5 +1,6 @@
 #include "tled/run/monitor.h"
 
+#include "tled/contact/sliding.h"
 #include "tled/problem/collider.h"
 
 #include "base/mem.h"
@@ -123,13 +124,25 @@ static void element_work(void *context, int64_t chunk, int64_t from, int64_t to)
     w->part[chunk] = part;
 }
 
+/* What is left of a force once bone that the node slides on has borne its part. */
+static void bear(const monitor *w, int64_t n, double net[3])
+{
+    const sliding_load load = sliding_load_at(w->p, w->p->sliding->row[n], w->curves, w->displacement, net);
+    for (int a = 0; a < 3; a++)
+        net[a] += load.normal[a] + load.stuck[a];
+}
+
 static void add_node(const monitor *w, int64_t n, tled_sums *sum)
 {
-    double outside[3], square = 0, mass = w->p->mass[n];
-    tled_external(w->p, w->curves, w->displacement + 3 * n, n, outside);
+    double net[3], square = 0, mass = w->p->mass[n];
+    tled_external(w->p, w->curves, w->displacement + 3 * n, n, net);
+    for (int a = 0; a < 3; a++)
+        net[a] -= w->internal[3 * n + a];
+    if (w->p->sliding && w->p->sliding->row[n] >= 0)
+        bear(w, n, net);
     for (int a = 0; a < 3; a++) {
         int64_t i = 3 * n + a;
-        double gap = outside[a] - w->internal[i], drive = mass * w->velocity[i] * w->velocity[i];
+        double gap = net[a], drive = mass * w->velocity[i] * w->velocity[i];
         bool is_free = w->p->hold[i] == HOLD_FREE;
         sum->acceleration += is_free ? gap * gap / mass : 0;
         sum->speed += is_free ? drive : 0;

@@ -47,6 +47,8 @@ static const opt option_list[] = {
      "poses of the probe: TUM lines or PLUS sequence"},
     {OPT_ACTION, 0, "repulsion", "X", OPT_NUMBER, TO(repulsion), 1e-6, 1e3, NULL, OPT_OUTPUT,
      "contact stiffness relative to tissue [default 1]"},
+    {OPT_ACTION, 0, "friction", "MU", OPT_NUMBER, TO(friction), 0, 1e3, NULL, OPT_OUTPUT,
+     "Coulomb friction of nodes that slide on bone [default 0]"},
     {OPT_INPUT, 0, "unit", NUM_UNITS_CHOICES, OPT_TEXT, TO(unit), 0, 0, NULL, 0,
      "unit of OBJ files: of the probe, of the script [default the model's]"},
     {OPT_INPUT, 0, "body", "FILE", OPT_TEXT, TO(body), 0, 0, NULL, OPT_FILE,

@@ -17,6 +17,7 @@ struct options {
     const char *activations, *expressions;
     int between; /* rows of activations: 0: linear, 1: smooth; below 0: not given */
     double repulsion;
+    double friction;
     const char *checkpoint, *restart;
     double checkpoint_every;
     bool live, force;

@@ -1,4 +1,5 @@
 #include "base/num.h"
+#include "tled/contact/sliding.h"
 #include "tled/run/run_parts.h"
 #include "tled/run/timeline.h"
 
@@ -73,6 +74,8 @@ static int take_over(run *n)
         return -1;
     if (tled_problem_reload(n->live->p, n->live->m, n->e) || monitor_reload(n->monitor, n->e))
         return -1;
+    if (n->live->p->sliding)
+        sliding_follow(n->live->p->sliding, n->live->p->script);
     const int more = n->r->device->reload ? n->r->device->reload(n->state, n->e) : 1;
     return more < 0 || (more && make_again(n, AS_IT_IS)) || run_monitor(n) ? -1 : 0;
 }

@@ -391,12 +391,20 @@ static int say_control(model *m, hourglass_control control, err *e)
     return model_meta_set(m, "hourglass.control", text, e);
 }
 
+static int check_friction(const session *s, const struct options *o, err *e)
+{
+    if (o->friction > 0 && !s->problem.sliding)
+        return err_option(e, "--friction", "no node of the model slides on bone; expected some (attach --slide)");
+    return 0;
+}
+
 /* From the model that came to the problem and how it is to be run. */
 static int prepare(session *s, const struct options *o, char *device, size_t size, err *e)
 {
     s->run.rest = o->rest >= 0 ? o->rest : o->seconds < 0 && !o->steps && !s->live ? rest_tolerance : -1;
     if (change_materials(s, o, e) || read_collider(s, o, e) || make_script(s, o, e) ||
         tled_problem_make(&s->problem, &s->m, &s->script, o->control, e) || say_control(&s->m, o->control, e) ||
+        sliding_make(&s->sliding, &s->problem, &s->m, o->friction, e) || check_friction(s, o, e) ||
         support_of(&s->problem, &s->support, e) ||
         support_check(&s->support, &s->problem, s->run.rest >= 0, s->collider.poses, &s->warnings, e))
         return -1;
@@ -528,6 +536,7 @@ out:
     folds_free(&s.folds);
     tled_problem_free(&s.problem);
     collider_free(&s.collider);
+    sliding_free(&s.sliding);
     script_free(&s.script);
     expressions_free(&s.expressions);
     model_free(&s.m);

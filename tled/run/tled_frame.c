@@ -1,6 +1,7 @@
 #include "tled/run/tled_frame.h"
 
 #include "base/mem.h"
+#include "tled/contact/sliding_loads.h"
 #include "tled/problem/bodies.h"
 #include "tled/problem/film_strain.h"
 #include "tled/run/tled_live.h"
@@ -42,7 +43,7 @@ static int add_probe(const session *s, frame *f, const double *displacement, err
 
 bool tled_frame_takes_curves(const session *s)
 {
-    return bodies_count(&s->problem) || films_count(&s->problem) || s->results;
+    return bodies_count(&s->problem) || films_count(&s->problem) || s->problem.sliding || s->results;
 }
 
 /* The curves' values at a frame's time. *own is the caller's to free. NULL with e filled. */
@@ -79,6 +80,15 @@ static int add_bone(const session *s, frame *f, const double *value, err *e)
     return to ? 0 : -1;
 }
 
+/* The most nodes that a frame has beyond the distance field of their bone. */
+static void note_beyond(session *s, const bodies_state *now)
+{
+    int64_t beyond = 0;
+    if (s->problem.sliding && now->value)
+        sliding_worst(&s->problem, now->value, now->displacement, &beyond);
+    s->beyond = beyond > s->beyond ? beyond : s->beyond;
+}
+
 /* Where bone and bodies are, and what the tissue pulls these with; and what elements hold. */
 static int add_looks(session *s, frame *f, const field_values *state, err *e)
 {
@@ -91,9 +101,10 @@ static int add_looks(session *s, frame *f, const field_values *state, err *e)
                               state->of[TLED_DISPLACEMENT],
                               {count > TLED_CONTRACTILE ? state->of[TLED_CONTRACTILE] : NULL,
                                count > TLED_MIXCONTRACTILE ? state->of[TLED_MIXCONTRACTILE] : NULL}};
+    note_beyond(s, &now);
     const int failed = (!value && !s->live) || add_bone(s, f, value, e) ||
                                bodies_add(&s->problem, s->folds.threads, &now, f, &s->m, e) ||
-                               add_results(s, f, value, e)
+                               sliding_add(&s->problem, s->folds.threads, &now, f, e) || add_results(s, f, value, e)
                            ? -1
                            : 0;
     free(own);

@@ -7,6 +7,7 @@
 #include "cli/progress.h"
 #include "model/stage.h"
 #include "results/results.h"
+#include "tled/contact/sliding.h"
 #include "tled/problem/collider.h"
 #include "tled/problem/followers.h"
 #include "tled/problem/support.h"
@@ -24,6 +25,7 @@ typedef struct session {
     tled_problem problem;
     support support;
     collider collider;
+    sliding sliding;
     pool *threads;
     run_setup run;
     run_log log;
@@ -34,6 +36,7 @@ typedef struct session {
     int64_t cut;            /* parts of a step, as said last */
     double stable;          /* s: at rest */
     folds folds;            /* of the frames written */
+    int64_t beyond;         /* likewise, the most nodes that slid beyond a distance field */
     results *results;       /* that frames get; NULL: none; owned */
     double *activation;     /* volumes: of the frame that is written, where there are results; owned */
     struct live *live;      /* NULL: not a live run, nor a replay; owned */

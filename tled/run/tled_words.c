@@ -20,6 +20,8 @@ void words_start(const session *s, const char *device, const struct options *o)
              (long long)p->nodes, (long long)p->held, device, o->precision ? "single" : "double");
     if (p->films)
         tool_say(s->t, "%lld films hang on bone", (long long)films_count(p));
+    if (p->sliding)
+        tool_say(s->t, "%lld nodes slide on bone, friction %g", (long long)p->sliding->count, p->sliding->friction);
     const int64_t least = cut_least(p);
     if (least)
         tool_say(s->t, "%lld cut element%s, of which less than %g is enclosed, the mass is that of %g",
@@ -67,6 +69,11 @@ void words_folds(session *s, const run_end *end, bool ended)
     folds_text(&s->folds, ended, folded);
     tool_say(s->t, "%s", folded);
     folds_warn(&s->folds, ended, end->most_strain, &s->warnings);
+    if (s->beyond)
+        notes_add(&s->warnings,
+                  "%lld nodes slid beyond the distance field of their bone, which goes on there as in its last voxel; "
+                  "expected a way of at most 8 voxels beyond where nodes slide at rest",
+                  (long long)s->beyond);
 }
 
 void words_end(session *s, const run_end *end)

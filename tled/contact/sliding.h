@@ -1,0 +1,98 @@
+/* Nodes that slide on bone: a distance field of the bone, which moves with its body, keeps them as far from it as they
+ * are at rest, or no nearer. With phi the distance, B the bone's motion and phi0 = phi(X), a node at x = X + u is off by
+ *     g = phi(B^-1 x) - phi0;
+ * after the predictor it is put back along n = B grad phi, which leaves the stable step as it is:
+ *     u -= g n,   v -= g n/dt.
+ * The forces that push it into the bone, or pull it off where it may not lift, are borne by that: with a the
+ * acceleration by all forces, its part along n is left out, and so is no part of v at the end of a step. What then
+ * bears on the bone in a step is m (g/dt - a.n dt), and Coulomb friction takes at most mu times that of the velocity
+ * relative to the bone, along it.
+ *
+ * phi is trilinear between samples at corners of voxels (slide.node, field.first, distance.value of the model); beyond
+ * the field it goes on as in the nearest cell. Nodes that the script displaces do not slide in what it displaces.
+ * All is computed in double, node by node: the same bytes for any number of threads. The creator owns a sliding; it
+ * borrows the model.
+ */
+#ifndef SINEW_SLIDING_H
+#define SINEW_SLIDING_H
+
+#include "tled/problem/state.h"
+
+typedef struct sliding_field {
+    int64_t start;      /* of its samples */
+    int32_t samples[3]; /* along x, y, z */
+    double first[3];    /* m: where its first sample is */
+    int32_t hold;       /* the script's first curve of its body, or -1: it stays */
+} sliding_field;
+
+typedef struct sliding {
+    int64_t count; /* nodes */
+    const int32_t *node, *of;
+    const uint8_t *lifts; /* nodes: whether it may come off; NULL: none may */
+    double *rest;         /* nodes, m: phi0 */
+    int32_t *row;         /* of the model's nodes: which slides, or -1 */
+    sliding_field *field;
+    int64_t fields;
+    const int32_t *body; /* fields: the body that each moves with, or -1; NULL: none moves */
+    char *const *name;   /* bodies */
+    const float *value;  /* m: phi */
+    double spacing[3];
+    double friction; /* mu */
+} sliding;
+
+/* Makes s, and s->fields = 0 where the model has no nodes that slide; it is the problem's from then on. -1 with e
+ * filled, and s to be freed all the same. */
+int sliding_make(sliding *s, tled_problem *p, const model *m, double friction, err *e);
+void sliding_free(sliding *s);
+
+/* Takes over which curves of the script move the bones. */
+void sliding_follow(sliding *s, const script *of);
+
+/* Where a field's bone is: x = turn X + to. */
+typedef struct sliding_bone {
+    double turn[3][3], to[3];
+} sliding_bone;
+
+/* value: the curves'. */
+sliding_bone sliding_bone_at(const sliding *s, int32_t which, const double *value);
+
+/* How far node row i is off at x (m), and n: a unit vector. The bone's point there, at rest, is where. */
+typedef struct sliding_touch {
+    double off, normal[3], where[3];
+} sliding_touch;
+
+sliding_touch sliding_at(const sliding *s, int64_t i, const sliding_bone *bone, const double x[3]);
+
+/* Takes out of a force on node row i (3, N), or an acceleration, what the bone bears of it at displacement u; in
+ * components that are not held. Returns what that was along n: above 0 it is pushed into the bone. */
+double sliding_bear(const tled_problem *p, int64_t i, const sliding_bone *bone, const double u[3], double force[3]);
+
+/* What the bone does to a node, N, where other forces sum up to `net`: along n, and by friction as long as it does not
+ * slip. In free components; value: the curves'; displacement: of all nodes. */
+typedef struct sliding_load {
+    double normal[3], stuck[3];
+    double pressed; /* of what is along n, what presses the node; at least 0 */
+} sliding_load;
+
+sliding_load sliding_load_at(const tled_problem *p, int64_t i, const double *value, const double *displacement,
+                             const double net[3]);
+
+/* A node between two moments, and at them. */
+typedef struct sliding_moment {
+    const double *value, *displacement; /* as above */
+    const sliding_load *load;           /* of node row i */
+} sliding_moment;
+
+/* The bone's work on it, J: of a node that slips, friction is mu times the mean of what presses it. */
+double sliding_work(const tled_problem *p, int64_t i, const sliding_moment *was, const sliding_moment *is);
+
+/* After the predictor: u and v of node row i, in a step of dt; borne: the acceleration that the bone bears (of
+ * sliding_bear). was: where the bone was before the step. */
+void sliding_place(const tled_problem *p, int64_t i, const sliding_bone *was, const sliding_bone *is, double borne,
+                   double dt, double u[3], double v[3]);
+
+/* Of the nodes at these displacements (nodes x 3, m), the most that one is off (m, either way, or into the bone where
+ * it may lift), and how many are beyond their field. */
+double sliding_worst(const tled_problem *p, const double *value, const double *displacement, int64_t *beyond);
+
+#endif
