@@ -1,6 +1,7 @@
 #!/bin/sh
 # attach --slide and tled-run: nodes that slide on bone. Distance fields against a plane and a sphere; blocks on planes and a sphere
 # against closed forms; bodies, energies, bytes, and what is refused.
+# shellcheck disable=SC2046 # what prints numbers is split into these
 . "$(dirname "$0")/lib.sh"
 
 get() {

@@ -1,5 +1,6 @@
 /* Nodes that slide on bone: a distance field of the bone, which moves with its body, keeps them as far from it as they
- * are at rest, or no nearer. With phi the distance, B the bone's motion and phi0 = phi(X), a node at x = X + u is off by
+ * are at rest, or no nearer. With phi the distance, B the bone's motion and phi0 = phi(X), a node at x = X + u is off
+ * by
  *     g = phi(B^-1 x) - phi0;
  * after the predictor it is put back along n = B grad phi, which leaves the stable step as it is:
  *     u -= g n,   v -= g n/dt.

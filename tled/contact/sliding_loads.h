@@ -12,7 +12,7 @@
  * about the mean of those that slide on it. -1 with e filled. */
 int sliding_loads(const tled_problem *p, pool *threads, const bodies_state *now, body_load *to, err *e);
 
-/* The same to a frame's body.force and body.torque; and fills body.pose of those that hold no node. -1 with e filled. */
+/* The same to a frame's body.force and body.torque; fills body.pose of those that hold no node. -1 with e filled. */
 int sliding_add(const tled_problem *p, pool *threads, const bodies_state *now, frame *f, err *e);
 
 #endif

@@ -155,7 +155,7 @@ template <int COUNT> static __device__ __forceinline__ float series(const float 
     return sum;
 }
 
-/* By y = x/3. No cell: y is -1, so that all is finite. To ask how many powers there are would take longer than these. */
+/* By y = x/3. No cell: y is -1, so that all is finite. All powers take less time than to ask how many there are. */
 static __device__ __forceinline__ bent bent_of(const march_more &c, const stretch &s)
 {
     bent b;
