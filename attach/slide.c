@@ -274,13 +274,19 @@ typedef struct field {
     int32_t body, first[3], samples[3];
     bool *is;
     float *value;
-    const measure *measure;
-    const lattice *grid;
 } field;
+
+/* What a field is sampled by. */
+typedef struct sampling {
+    const field *f;
+    const measure *by;
+    const lattice *grid;
+} sampling;
 
 static void sample_work(void *context, int64_t chunk, int64_t from, int64_t to)
 {
-    const field *f = context;
+    const sampling *s = context;
+    const field *f = s->f;
     (void)chunk;
     for (int64_t row = from; row < to; row++) {
         const int32_t j = (int32_t)(row % f->samples[1]), k = (int32_t)(row / f->samples[1]);
@@ -288,8 +294,8 @@ static void sample_work(void *context, int64_t chunk, int64_t from, int64_t to)
         for (int32_t i = 0; i < f->samples[0]; i++) {
             const int32_t at[3] = {f->first[0] + i, f->first[1] + j, f->first[2] + k};
             double x[3];
-            lattice_corner(f->grid, at, x);
-            f->value[row * f->samples[0] + i] = (float)distance_at(f->measure, x, &guess);
+            lattice_corner(s->grid, at, x);
+            f->value[row * f->samples[0] + i] = (float)distance_at(s->by, x, &guess);
         }
     }
 }
@@ -331,7 +337,7 @@ static int64_t count_samples(const field *f)
 
 /* The most that a node of the field is away from the bone, in voxels' longest sides; tells how many are more than half
  * of one away. */
-static double find_worst(const slider *s, const field *f, int64_t *far)
+static double find_worst(const slider *s, const field *f, const measure *by, int64_t *far)
 {
     const double *h = s->grid->spacing, voxel = fmax(h[0], fmax(h[1], h[2]));
     double worst = 0;
@@ -339,7 +345,7 @@ static double find_worst(const slider *s, const field *f, int64_t *far)
     for (int64_t n = 0; n < s->nodes; n++) {
         if (!is_in(s, n, f->body))
             continue;
-        const double away = fabs(distance_at(f->measure, s->position + 3 * n, &guess)) / voxel;
+        const double away = fabs(distance_at(by, s->position + 3 * n, &guess)) / voxel;
         worst = fmax(worst, away);
         *far += away > .5 * (1 + 1e-6);
     }
@@ -428,10 +434,9 @@ static int fill_field(slider *s, field *f, slide_found *found, int64_t *far)
     }
     f->value = failed ? NULL : mem_array(count_samples(f), sizeof *f->value, "the distance field", s->e);
     if (f->value) {
-        f->measure = &d;
-        f->grid = s->grid;
-        pool_run(s->threads, (int64_t)f->samples[1] * f->samples[2], 16, sample_work, f);
-        found->worst = fmax(found->worst, find_worst(s, f, far));
+        sampling work = {f, &d, s->grid};
+        pool_run(s->threads, (int64_t)f->samples[1] * f->samples[2], 16, sample_work, &work);
+        found->worst = fmax(found->worst, find_worst(s, f, &d, far));
     }
     measure_free(&d);
     memset(s->is_turned, 0, (size_t)s->r->surfaces * sizeof *s->is_turned);
