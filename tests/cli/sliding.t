@@ -166,6 +166,27 @@ set -- $(get node.displacement.mean "$T/out")
 below "$1" 1e-9 "one without friction leaves tissue where it was"
 near "$3" .005 .01 "but lifts it"
 
+# ---- what else goes with it: a run that was cut off, one that is live, and other formats
+lasting() {
+    tled-run -q -d cpu --script "$T/push" --friction .1 --damping 20 -t 6 --every .5 "$@" <"$T/moves" 2>/dev/null
+}
+lasting -o "$T/whole"
+tled-run -q -d cpu --script "$T/push" --friction .1 --damping 20 -t 6 --every .5 --checkpoint "$T/point" --checkpoint-every .02 -o "$T/cut" \
+    <"$T/moves" 2>/dev/null &
+cut=$!
+i=0
+while [ ! -s "$T/point" ] && [ $i -lt 100 ]; do
+    sleep .05
+    i=$((i + 1))
+done
+kill -KILL $cut
+wait $cut 2>/dev/null
+fails 1 "a checkpoint keeps the friction" "friction" sh -c "tled-run -q -d cpu --script '$T/push' --friction .2 --damping 20 -t 6 --every .5 --restart '$T/point' -o '$T/cut' <'$T/moves'"
+lasting --restart "$T/point" --checkpoint "$T/point" -o "$T/cut"
+is "$(cmp "$T/whole" "$T/cut" 2>&1)" "" "and a run that was cut off goes on to the same bytes"
+sinew export -f inp -o "$T/file.inp" "$T/keeps" 2>"$T/said"
+check "an Abaqus file has no sliding nodes, and says so" grep -q 'nodes that slide on bone are free there' "$T/said"
+
 # ---- refused
 fails 2 "friction of nothing" "no node of the model slides on bone" sh -c "awk -v nx=2 -v ny=2 -v nz=2 -v h=.01 -v held=low -f tests/cli/block.awk | tled-run -n 1 --friction .1"
 spoilt() { # ARRAY ROW VALUE

@@ -174,6 +174,8 @@ int sliding_make(sliding *s, tled_problem *p, const model *m, double friction, e
         return 0;
     if (p->conforming)
         return err_set(e, NULL, 0, "nodes slide on bone in a model without a lattice; expected one of voxels");
+    if (p->films)
+        return err_set(e, NULL, 0, "nodes slide on bone that holds the tissue by films; expected one of both");
     if (lattice_of(m, &l, e) || read_fields(s, m, &l, e) || read_nodes(s, m, p->nodes, e) || check_held(s, m, e))
         return -1;
     memcpy(s->spacing, l.spacing, sizeof s->spacing);
