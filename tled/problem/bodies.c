@@ -418,9 +418,9 @@ int bodies_add(const tled_problem *p, pool *threads, const bodies_state *now, fr
         memcpy(to[2] + 3 * (int64_t)i, load[i].torque, sizeof load[i].torque);
     }
     for (int32_t i = 0; !failed && !p->films && i < b->count; i++) {
-        if (b->start[i] == b->start[i + 1])
-            continue;
-        const pose at = pose_fit(p->position, now->displacement, b->node + b->start[i], b->start[i + 1] - b->start[i]);
+        const int64_t count = b->start[i + 1] - b->start[i];
+        const pose at = count ? pose_fit(p->position, now->displacement, b->node + b->start[i], count)
+                              : (pose){.quaternion = {0, 0, 0, 1}};
         pose_to_row(&at, to[0] + 7 * (int64_t)i);
     }
     free(load);
