@@ -223,6 +223,7 @@ static void measure_free(measure *d)
     triangle_tree_destroy(d->tree);
     pseudonormal_free(&d->side);
     skin_free(&d->skin);
+    *d = (measure){.tree = NULL};
 }
 
 /* d is to be freed all the same. */
@@ -253,7 +254,7 @@ static double distance_at(const measure *d, const double x[3], int64_t *guess)
 }
 
 /* Whether the tissue beside the nodes is behind the triangles of each surface, by more than half of these. */
-static void find_turned(slider *s, const measure *d)
+static int find_turned(slider *s, const measure *d)
 {
     int64_t *votes = mem_array(s->r->surfaces + 1, sizeof *votes, "the rigid surfaces", s->e), guess = -1;
     for (int64_t n = 0; votes && n < s->nodes; n++) {
@@ -266,7 +267,9 @@ static void find_turned(slider *s, const measure *d)
     }
     for (int64_t i = 0; votes && i < s->r->surfaces; i++)
         s->is_turned[i] = votes[i] < 0;
+    const int failed = votes ? 0 : -1;
     free(votes);
+    return failed;
 }
 
 /* Nodes of one body, -1: of none; which surfaces hold some of them; and the box of their corners. */
@@ -428,9 +431,9 @@ static int fill_field(slider *s, field *f, slide_found *found, int64_t *far)
     measure d;
     int failed = measure_make(&d, s, f->is);
     if (!failed) {
-        find_turned(s, &d);
+        failed = find_turned(s, &d);
         measure_free(&d);
-        failed = measure_make(&d, s, f->is);
+        failed = failed || measure_make(&d, s, f->is);
     }
     f->value = failed ? NULL : mem_array(count_samples(f), sizeof *f->value, "the distance field", s->e);
     if (f->value) {

@@ -56,7 +56,8 @@ enum {
     OPT_FILE = 8,     /* its text names a file: provenance has the base name only, completion offers files */
     OPT_WRITES = 16,  /* its text names a file, or files by a number in it, that are written: nothing else may be */
     OPT_ALSO = 32,    /* another name of the option before it, with the same `to`: left out of the synopsis */
-    OPT_NAMED = 64    /* its text is NAME=VALUE; a value that ends in .obj or .obj.gz names a file, as with OPT_FILE */
+    OPT_NAMED =
+        64 /* its text is NAME=VALUE, or NAME:VALUE; one that ends in .obj or .obj.gz is a file, as with OPT_FILE */
 };
 
 typedef struct opt {

@@ -101,7 +101,7 @@ static void put_named(const char *text, const void *options, out *to)
 {
     char word[1024];
     const opt_common *common = options;
-    const char *equals = strchr(text, '=');
+    const char *equals = strpbrk(text, "=:");
     if (!equals || !path_is_obj(equals + 1)) {
         put_word(text, to);
         return;

@@ -55,6 +55,8 @@ is "$(get axis.slide "$T/half") $(get node.rigid.sum "$T/half" 2>/dev/null)" "15
 sed -e 's/^v 20/v 11/' -e 's/^v 0/v -3/' -e 's/^\(v [-0-9]*\) 20/\1 23/' -e 's/^\(v [-0-9]*\) 0/\1 -3/' -e 's/ 0$/ -3/' -e 's/ 10$/ 3/' "$T/block.obj" >"$T/region.obj"
 on_plate --slide "skull_plate:$T/region.obj" >"$T/region"
 is "$(get axis.slide "$T/region")" 15 "or inside of a closed surface"
+on_plate --anonymous-names --slide "skull_plate:$T/region.obj" >"$T/nameless"
+is "$(sinew info "$T/region" | grep -c ' skull_plate:region.obj') $(sinew info "$T/nameless" | grep -c ' skull_plate:FILE')" "1 1" "whose name provenance has, or not"
 on_plate --slide skull_plate --slide-off 'skull*:-1,-1,-1,11,21,1' --part plate=skull_plate >"$T/both"
 is "$(get axis.slide "$T/both") $(get slide.lifts.sum "$T/both") $(get field.body.max "$T/both")" "25 15 0" "some may come off; the field is the body's"
 
