@@ -120,7 +120,9 @@ static int find_surfaces(const slider *s, const char *option, const char *text, 
     char name[MODEL_NAME];
     for (const char *p = text; p < text + length;) {
         const size_t rest = (size_t)(text + length - p), comma = strcspn(p, ","), n = comma < rest ? comma : rest;
-        snprintf(name, sizeof name, "%.*s", (int)(n < sizeof name ? n : sizeof name - 1), p);
+        if (!n || n >= sizeof name)
+            return err_usage(s->e, "%s '%.200s': expected names of rigid surfaces between commas", option, text);
+        snprintf(name, sizeof name, "%.*s", (int)n, p);
         if (find_surface(s, option, name, is))
             return -1;
         p += n + (n < rest);
@@ -240,7 +242,7 @@ static int measure_make(measure *d, const slider *s, const bool *is)
     if (d->side.turned)
         return err_set(s->e, NULL, 0,
                        "--slide: at %" PRId64 " edges of %s and what slides beside it, two faces face different sides; "
-                       "expected surfaces of which all faces face the tissue, or all the bone",
+                       "expected surfaces, and all that touch, whose faces all face the tissue, or all the bone",
                        d->side.turned, s->r->surface[k->anchor[0]].name);
     d->tree = triangle_tree_create(k->position, k->corner, k->triangles, s->e);
     return d->tree ? 0 : -1;
@@ -251,25 +253,6 @@ static double distance_at(const measure *d, const double x[3], int64_t *guess)
     const triangle_hit hit = triangle_tree_nearest(d->tree, x, *guess);
     *guess = hit.triangle;
     return pseudonormal_outside(&d->side, &hit, x) ? sqrt(hit.distance2) : -sqrt(hit.distance2);
-}
-
-/* Whether the tissue beside the nodes is behind the triangles of each surface, by more than half of these. */
-static int find_turned(slider *s, const measure *d)
-{
-    int64_t *votes = mem_array(s->r->surfaces + 1, sizeof *votes, "the rigid surfaces", s->e), guess = -1;
-    for (int64_t n = 0; votes && n < s->nodes; n++) {
-        if (!s->mark[n])
-            continue;
-        const double *x = s->beside + 3 * n;
-        const triangle_hit hit = triangle_tree_nearest(d->tree, x, guess);
-        guess = hit.triangle;
-        votes[d->skin.anchor[hit.triangle]] += pseudonormal_outside(&d->side, &hit, x) ? 1 : -1;
-    }
-    for (int64_t i = 0; votes && i < s->r->surfaces; i++)
-        s->is_turned[i] = votes[i] < 0;
-    const int failed = votes ? 0 : -1;
-    free(votes);
-    return failed;
 }
 
 /* Nodes of one body, -1: of none; which surfaces hold some of them; and the box of their corners. */
@@ -306,6 +289,25 @@ static void sample_work(void *context, int64_t chunk, int64_t from, int64_t to)
 static bool is_in(const slider *s, int64_t node, int32_t body)
 {
     return s->mark[node] && (s->body ? s->body[node] : -1) == body;
+}
+
+/* Whether the tissue beside the nodes is behind the triangles of each surface, by more than half of these. */
+static int find_turned(slider *s, const field *f, const measure *d)
+{
+    int64_t *votes = mem_array(s->r->surfaces + 1, sizeof *votes, "the rigid surfaces", s->e), guess = -1;
+    for (int64_t n = 0; votes && n < s->nodes; n++) {
+        if (!is_in(s, n, f->body))
+            continue;
+        const double *x = s->beside + 3 * n;
+        const triangle_hit hit = triangle_tree_nearest(d->tree, x, guess);
+        guess = hit.triangle;
+        votes[d->skin.anchor[hit.triangle]] += pseudonormal_outside(&d->side, &hit, x) ? 1 : -1;
+    }
+    for (int64_t i = 0; votes && i < s->r->surfaces; i++)
+        s->is_turned[i] = votes[i] < 0;
+    const int failed = votes ? 0 : -1;
+    free(votes);
+    return failed;
 }
 
 /* false: no node of the body slides. */
@@ -431,7 +433,7 @@ static int fill_field(slider *s, field *f, slide_found *found, int64_t *far)
     measure d;
     int failed = measure_make(&d, s, f->is);
     if (!failed) {
-        failed = find_turned(s, &d);
+        failed = find_turned(s, f, &d);
         measure_free(&d);
         failed = failed || measure_make(&d, s, f->is);
     }

@@ -131,7 +131,7 @@ below "$1" 1e-3 "after 10,000 steps on a sphere no node is off by as much of a v
 below "$2" .02 "nor, where samples lie between, from the sphere itself"
 check "which went by more than 10 mm" test "$(get node.displacement.max "$T/out" | awk '{ print ($1 > .01) }')" = 1
 tled-run -q -d cpu -g 40,0,9.81 --ramp .01 --damping 1 -t .2 <"$T/sphere" >"$T/out" 2>"$T/said"
-check "one that leaves it is told" grep -q 'nodes slid beyond the distance field of their bone' "$T/said"
+check "one that leaves it is told" grep -q 'nodes slid beyond the distance field of their bone, which goes on there as at its border' "$T/said"
 check "it comes to rest" sh -c "tled-run -q -d cpu -g 2,1,9.81 --ramp .01 -o '$T/rest' <'$T/sphere'"
 
 # ---- bytes
@@ -162,11 +162,28 @@ set -- $(get body.force.plate "$T/out")
 near "$3" -.15696 .01 "and bears its weight"
 set -- $(get body.pose "$T/out")
 near "$5" .258819045 1e-6 "frames say how it has turned"
+tled-run -q -d cpu -g 0,0,-9.81 --friction 1 --damping 300 -t .1 <"$T/out" >"$T/on"
+set -- $(get node.displacement.at.40mm,0,0 "$T/on") $(get node.velocity.max "$T/on")
+near "$3" -.02 .02 "going on without a script, it stays where it was"
+below "$4" .01 "and at rest"
+tled-run -q -d cpu -g 0,0,-9.81 --ramp .01 --friction 1 -o "$T/rest" <"$T/out"
+check "to rest, as friction holds it" sinew info --get node.displacement.max "$T/rest"
+near "$(get node.displacement.at.40mm,0,0 "$T/rest" | awk '{ print $3 }')" -.02 .02 "where it was"
 printf '0 gravity 0,0,0\n.1 gravity 0,0,-9.81\n.1 move plate 0,0,0 0,0,0,1\n.3 move plate 20mm,0,5mm 0,0,0,1\n' >"$T/push"
 tled-run -q -d cpu --script "$T/push" --damping 20 -t .4 <"$T/moves" >"$T/out" 2>/dev/null
 set -- $(get node.displacement.mean "$T/out")
 below "$1" 1e-9 "one without friction leaves tissue where it was"
 near "$3" .005 .01 "but lifts it"
+
+# ---- nodes that the script holds in part slide in the rest
+printf '0 gravity 0,0,0\n.1 gravity 2,2,-9.81\n0 displace -1mm,-1mm,-1mm,1mm,50mm,1mm 0,-,-\n' >"$T/part"
+tled-run -q -d cpu --script "$T/part" --damping 50 -t .2 <"$T/keeps" >"$T/out"
+set -- $(get node.displacement.at.0,0,0 "$T/out")
+check "in the direction that is free, and on the plane" test "$1 $3 $(awk -v y="$2" 'BEGIN { print (y > .003) }')" = "0 0 1"
+awk -v E=30000 -v nx=8 -v ny=8 -v nz=3 -v h=.0025 -f tests/cli/block.awk | awk -v nx=8 -v ny=8 -v h=.0025 -v R=.05 -f tests/cli/slide.awk >"$T/sphere"
+printf '0 displace 12mm,9mm,-1mm,13mm,11mm,1mm -,-,0\n.01 displace 12mm,9mm,-1mm,13mm,11mm,1mm -,-,.1mm\n' >"$T/up"
+tled-run -q -d cpu --script "$T/up" --damping 50 -t .02 <"$T/sphere" >"$T/out"
+below "$(get node.displacement.max "$T/out" | cut -d ' ' -f 1)" 1e-3 "what is held along the normal is not thrown along the bone"
 
 # ---- what else goes with it: a run that was cut off, one that is live, and other formats
 lasting() {

@@ -1,6 +1,7 @@
 #include "tled/contact/sliding.h"
 
 #include "base/mem.h"
+#include "base/pose.h"
 #include "mesh/lattice.h"
 
 #include <math.h>
@@ -25,7 +26,7 @@ static int read_fields(sliding *s, const model *m, const lattice *l, err *e)
         if (n[0] < 2 || n[1] < 2 || n[2] < 2)
             return err_set(e, NULL, 0, "field.samples, row %lld, is %d %d %d; expected each at least 2", (long long)i,
                            n[0], n[1], n[2]);
-        *f = (sliding_field){.start = count, .hold = -1};
+        *f = (sliding_field){.start = count, .hold = -1, .still.turn = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
         memcpy(f->samples, n, sizeof f->samples);
         lattice_corner(l, first->i32 + 3 * i, f->first);
         if (n[0] > value->rows / n[1] || (int64_t)n[0] * n[1] > value->rows / n[2])
@@ -84,17 +85,18 @@ static int check_held(const sliding *s, const model *m, err *e)
 
 /* ---- the field */
 
-/* phi at X, and its gradient. */
+/* phi at X, and its gradient; beyond the field, along the gradient at its border. */
 static double distance_at(const sliding *s, int32_t which, const double where[3], double slope[3])
 {
     const sliding_field *f = &s->field[which];
     const int64_t row = f->samples[0], sheet = row * f->samples[1];
-    double t[3];
+    double t[3], over[3];
     int64_t at = f->start;
     for (int a = 0; a < 3; a++) {
-        const double local = (where[a] - f->first[a]) / s->spacing[a];
-        const double cell = fmin(fmax(floor(local), 0), f->samples[a] - 2);
-        t[a] = local - cell;
+        const double local = (where[a] - f->first[a]) / s->spacing[a], most = f->samples[a] - 1;
+        const double inside = fmin(fmax(local, 0), most), cell = fmin(floor(inside), most - 1);
+        t[a] = inside - cell;
+        over[a] = s->spacing[a] * (local - inside);
         at += (int64_t)cell * (a == 0 ? 1 : a == 1 ? row : sheet);
     }
     double x[4], along[4]; /* along x, at the four edges */
@@ -109,7 +111,7 @@ static double distance_at(const sliding *s, int32_t which, const double where[3]
         s->spacing[0];
     slope[1] = ((1 - t[2]) * (x[1] - x[0]) + t[2] * (x[3] - x[2])) / s->spacing[1];
     slope[2] = (high - low) / s->spacing[2];
-    return low + t[2] * (high - low);
+    return low + t[2] * (high - low) + (over[0] * slope[0] + over[1] * slope[1] + over[2] * slope[2]);
 }
 
 static bool is_beyond(const sliding *s, int32_t which, const double where[3])
@@ -126,7 +128,7 @@ sliding_bone sliding_bone_at(const sliding *s, int32_t which, const double *valu
     sliding_bone b = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {0, 0, 0}};
     const int32_t hold = s->field[which].hold;
     if (hold < 0)
-        return b;
+        return s->field[which].still;
     for (int a = 0; a < 3; a++) { /* moves.h: u = b + A X */
         b.to[a] = value[3 * (int64_t)hold + a];
         for (int k = 0; k < 3; k++)
@@ -141,6 +143,9 @@ static void move_with(const sliding_bone *b, const double where[3], double x[3])
         x[a] = b->to[a] + ((b->turn[a][0] * where[0] + b->turn[a][1] * where[1]) + b->turn[a][2] * where[2]);
 }
 
+/* Of a distance, whose slope is 1 but where the bone on two sides is as near. */
+static const double least_slope = .5;
+
 sliding_touch sliding_at(const sliding *s, int64_t i, const sliding_bone *bone, const double x[3])
 {
     sliding_touch t;
@@ -154,7 +159,7 @@ sliding_touch sliding_at(const sliding *s, int64_t i, const sliding_bone *bone, 
     for (int a = 0; a < 3; a++)
         length += slope[a] * slope[a];
     length = sqrt(length);
-    t.off = length > 0 ? (phi - s->rest[i]) / length : 0;
+    t.off = (phi - s->rest[i]) / fmax(length, least_slope);
     for (int a = 0; a < 3; a++) {
         t.normal[a] = 0;
         for (int k = 0; k < 3 && length > 0; k++)
@@ -197,6 +202,22 @@ void sliding_free(sliding *s)
     *s = (sliding){.count = 0};
 }
 
+void sliding_start(sliding *s, const frame *f)
+{
+    const model_array *at = frame_find(f, "body.pose");
+    for (int64_t i = 0; at && s->body && i < s->fields; i++) {
+        if (s->body[i] < 0)
+            continue;
+        const pose moved = pose_of_row(at->f64 + 7 * (int64_t)s->body[i]);
+        sliding_bone *to = &s->field[i].still;
+        double turn[9];
+        pose_matrix(moved.quaternion, turn);
+        for (int k = 0; k < 9; k++)
+            to->turn[k / 3][k % 3] = turn[k];
+        memcpy(to->to, moved.position, sizeof to->to);
+    }
+}
+
 void sliding_follow(sliding *s, const script *of)
 {
     for (int64_t f = 0; f < s->fields; f++)
@@ -209,7 +230,8 @@ void sliding_follow(sliding *s, const script *of)
 
 /* ---- a node */
 
-/* n in the components that nothing holds; returns the square of its length there, 0 where there is as good as none. */
+/* n in the components that nothing holds; returns the square of its length there, 0 where that is less than half: what
+ * holds the others then holds the node. */
 static double free_normal(const tled_problem *p, int64_t node, const double normal[3], double to[3])
 {
     double square = 0;
@@ -217,7 +239,7 @@ static double free_normal(const tled_problem *p, int64_t node, const double norm
         to[a] = p->hold[3 * node + a] == HOLD_FREE ? normal[a] : 0;
         square += to[a] * to[a];
     }
-    return square > 1e-6 ? square : 0;
+    return square >= .25 ? square : 0;
 }
 
 static void place_of(const tled_problem *p, int64_t node, const double u[3], double x[3])
@@ -227,9 +249,11 @@ static void place_of(const tled_problem *p, int64_t node, const double u[3], dou
 }
 
 /* As near to the bone as counts as touching it, in its least spacing. */
+static const double touch = 1e-4;
+
 static double touching(const sliding *s)
 {
-    return 1e-4 * fmin(s->spacing[0], fmin(s->spacing[1], s->spacing[2]));
+    return touch * fmin(s->spacing[0], fmin(s->spacing[1], s->spacing[2]));
 }
 
 double sliding_bear(const tled_problem *p, int64_t i, const sliding_bone *bone, const double u[3], double force[3])
@@ -337,6 +361,7 @@ void sliding_place(const tled_problem *p, int64_t i, const sliding_bone *was, co
 {
     enum { TURNS = 3 };
     const sliding *s = p->sliding;
+    const double most = touching(s) / touch / 2; /* half a voxel a turn */
     const int64_t node = s->node[i];
     const bool lifts = s->lifts && s->lifts[i];
     double x[3], n[3], square = 0, pushed = 0;
@@ -347,11 +372,12 @@ void sliding_place(const tled_problem *p, int64_t i, const sliding_bone *was, co
         square = free_normal(p, node, t.normal, n);
         if (!(square > 0) || (lifts && t.off > 0) || (k && fabs(t.off) < touching(s)))
             break;
+        const double back = fmin(fmax(t.off, -most), most) / square;
         for (int a = 0; a < 3; a++) {
-            u[a] -= t.off / square * n[a];
-            v[a] -= t.off / square * n[a] / dt;
+            u[a] -= back * n[a];
+            v[a] -= back * n[a] / dt;
         }
-        pushed -= t.off / sqrt(square) / dt;
+        pushed -= back * sqrt(square) / dt;
     }
     pushed += borne * dt;
     if (s->friction > 0 && square > 0 && pushed > 0) {

@@ -19,11 +19,17 @@
 
 #include "tled/problem/state.h"
 
+/* Where a field's bone is: x = turn X + to. */
+typedef struct sliding_bone {
+    double turn[3][3], to[3];
+} sliding_bone;
+
 typedef struct sliding_field {
     int64_t start;      /* of its samples */
     int32_t samples[3]; /* along x, y, z */
     double first[3];    /* m: where its first sample is */
     int32_t hold;       /* the script's first curve of its body, or -1: it stays */
+    sliding_bone still; /* where it then is: at rest, or where a frame has it */
 } sliding_field;
 
 typedef struct sliding {
@@ -46,13 +52,11 @@ typedef struct sliding {
 int sliding_make(sliding *s, tled_problem *p, const model *m, double friction, err *e);
 void sliding_free(sliding *s);
 
+/* Bodies that the script does not move stay where a frame, which the run begins from, has them (body.pose). */
+void sliding_start(sliding *s, const frame *f);
+
 /* Takes over which curves of the script move the bones. */
 void sliding_follow(sliding *s, const script *of);
-
-/* Where a field's bone is: x = turn X + to. */
-typedef struct sliding_bone {
-    double turn[3][3], to[3];
-} sliding_bone;
 
 /* value: the curves'. */
 sliding_bone sliding_bone_at(const sliding *s, int32_t which, const double *value);

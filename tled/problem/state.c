@@ -425,9 +425,10 @@ static void make_holds(tled_problem *p, const model *m)
 
 static void find_slides(tled_problem *p, const model *m)
 {
-    const model_array *node = model_find(m, "slide.node");
+    const model_array *node = model_find(m, "slide.node"), *lifts = model_find(m, "slide.lifts");
     p->slide = node ? node->i32 : NULL;
     p->slides = node ? node->rows : 0;
+    p->slide_lifts = lifts ? lifts->u8 : NULL;
 }
 
 int tled_problem_make(tled_problem *p, const model *m, const script *s, hourglass_control control, err *e)

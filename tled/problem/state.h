@@ -92,7 +92,8 @@ typedef struct tled_problem {
     struct films *films;               /* of tissue on bone (films.h), owned; NULL: none */
     struct followers *followers;       /* the script's pressures (followers.h), owned; NULL: none */
     struct sliding *sliding;           /* nodes that slide on bone (contact/sliding.h); NULL: none does */
-    const int32_t *slide;              /* slides: these nodes, borrowed */
+    const int32_t *slide;              /* slides: these nodes, borrowed; and: */
+    const uint8_t *slide_lifts;        /* which of them may come off; NULL: none may */
     int64_t slides;
 } tled_problem;
 

@@ -102,7 +102,8 @@ static int32_t search_from_held(const tled_problem *p, search *s, unsigned compo
         if (is_held(p, n, components))
             reach_node(s, (int32_t)n, 0);
     for (int64_t i = 0; i < p->slides; i++) /* bone holds them along its normal, which is of any component */
-        reach_node(s, p->slide[i], 0);
+        if (!p->slide_lifts || !p->slide_lifts[i])
+            reach_node(s, p->slide[i], 0);
     for (int64_t i = 0; p->films && i < p->films->nodes; i++) /* films hold all components */
         reach_node(s, p->films->node[i], 0);
     spread(p, s, 0);

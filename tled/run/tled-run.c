@@ -271,6 +271,8 @@ static int take_frames(session *s, bool changed, err *e)
         s->next_frame = last.index + 1;
     s->started = count > 0 && !changed;
     const int failed = count > 0 ? tled_problem_start(&s->problem, &last, &s->warnings, e) : 0;
+    if (count > 0)
+        sliding_start(&s->sliding, &last);
     frame_free(&last);
     return count < 0 ? -1 : failed;
 }

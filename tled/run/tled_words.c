@@ -71,7 +71,7 @@ void words_folds(session *s, const run_end *end, bool ended)
     folds_warn(&s->folds, ended, end->most_strain, &s->warnings);
     if (s->beyond)
         notes_add(&s->warnings,
-                  "%lld nodes slid beyond the distance field of their bone, which goes on there as in its last voxel; "
+                  "%lld nodes slid beyond the distance field of their bone, which goes on there as at its border; "
                   "expected a way of at most 8 voxels beyond where nodes slide at rest",
                   (long long)s->beyond);
 }
