@@ -112,8 +112,8 @@ for model in keeps lifts; do
     near "$2" "$4" .01 "and as fast"
     below "$(slid $model .6 | cut -d ' ' -f 1)" 2e-4 "$model: where mu is more than the slope it sticks"
 done
-set -- $(slid lifts .2) $(way .2)
-near "$1" "$3" .01 "lifts: with mu 0.2 likewise"
+set -- $(slid lifts .3) $(way .3)
+near "$1" "$3" .01 "lifts: with mu 0.3 likewise"
 tled-run -q -d cpu -g 0,0,1 --ramp 0 --damping 0 -t .1 <"$T/lifts" >"$T/out"
 near "$(get node.displacement.mean "$T/out" | cut -d ' ' -f 3)" .005 .02 "what may come off does"
 tled-run -q -d cpu -g 0,0,1 --ramp 0 --damping 0 -t .1 <"$T/keeps" >"$T/out"

@@ -335,25 +335,39 @@ double sliding_work(const tled_problem *p, int64_t i, const sliding_moment *was,
     return work;
 }
 
-/* Takes from v, along the bone, at most `most` of what is relative to it. */
-static void rub(const tled_problem *p, int64_t node, const double n[3], double square, const double bone[3],
-                double most, double dt, double u[3], double v[3])
+/* Takes from v, along the bone, at most `most` of what is relative to it, whose point there moves from was to is in dt.
+ */
+static void rub(const tled_problem *p, int64_t i, const sliding_touch *t, const sliding_bone *was,
+                const sliding_bone *is, double most, double dt, double v[3])
 {
-    double along = 0, speed = 0, slip[3];
+    const int64_t node = p->sliding->node[i];
+    double n[3], before[3], after[3], slip[3], along = 0;
+    const double square = free_normal(p, node, t->normal, n);
+    if (!(square > 0) || !(most > 0))
+        return;
+    move_with(was, t->where, before);
+    move_with(is, t->where, after);
     for (int a = 0; a < 3; a++) {
-        slip[a] = p->hold[3 * node + a] == HOLD_FREE ? v[a] - bone[a] : 0;
+        slip[a] = p->hold[3 * node + a] == HOLD_FREE ? v[a] - (after[a] - before[a]) / dt : 0;
         along += slip[a] * n[a];
     }
-    for (int a = 0; a < 3; a++) {
+    for (int a = 0; a < 3; a++)
         slip[a] -= along / square * n[a];
-        speed += slip[a] * slip[a];
-    }
-    speed = sqrt(speed);
-    const double part = speed > most ? most / speed : 1;
-    for (int a = 0; a < 3; a++) {
+    const double speed = length_of(slip), part = speed > most ? most / speed : 1;
+    for (int a = 0; a < 3; a++)
         v[a] -= part * slip[a];
-        u[a] -= dt * part * slip[a];
-    }
+}
+
+void sliding_rub(const tled_problem *p, int64_t i, const sliding_bone *past, const sliding_bone *is, double borne,
+                 double dt, const double u[3], double v[3])
+{
+    const sliding *s = p->sliding;
+    double x[3];
+    if (!(s->friction > 0) || !(borne > 0))
+        return;
+    place_of(p, s->node[i], u, x);
+    const sliding_touch t = sliding_at(s, i, is, x);
+    rub(p, i, &t, past, is, s->friction * borne * dt / 2, dt, v);
 }
 
 void sliding_place(const tled_problem *p, int64_t i, const sliding_bone *was, const sliding_bone *is, double borne,
@@ -379,14 +393,13 @@ void sliding_place(const tled_problem *p, int64_t i, const sliding_bone *was, co
         }
         pushed -= back * sqrt(square) / dt;
     }
-    pushed += borne * dt;
-    if (s->friction > 0 && square > 0 && pushed > 0) {
-        double before[3], after[3], bone[3];
-        move_with(was, t.where, before);
-        move_with(is, t.where, after);
+    pushed += borne * dt / 2;
+    if (s->friction > 0 && pushed > 0) {
+        double slid[3];
+        memcpy(slid, v, sizeof slid);
+        rub(p, i, &t, was, is, s->friction * pushed, dt, v);
         for (int a = 0; a < 3; a++)
-            bone[a] = (after[a] - before[a]) / dt;
-        rub(p, node, n, square, bone, s->friction * pushed, dt, u, v);
+            u[a] += dt * (v[a] - slid[a]);
     }
 }
 

@@ -91,8 +91,13 @@ typedef struct sliding_moment {
 /* The bone's work on it, J: of a node that slips, friction is mu times the mean of what presses it. */
 double sliding_work(const tled_problem *p, int64_t i, const sliding_moment *was, const sliding_moment *is);
 
-/* After the predictor: u and v of node row i, in a step of dt; borne: the acceleration that the bone bears (of
- * sliding_bear). was: where the bone was before the step. */
+/* Friction in the second half of a step of dt, on v of node row i at displacement u; past: where the bone was before
+ * the step. */
+void sliding_rub(const tled_problem *p, int64_t i, const sliding_bone *past, const sliding_bone *is, double borne,
+                 double dt, const double u[3], double v[3]);
+
+/* After the predictor, in the first half: u and v of node row i, in a step of dt; borne: the acceleration that the bone
+ * bears (of sliding_bear). was: where the bone was before the step. */
 void sliding_place(const tled_problem *p, int64_t i, const sliding_bone *was, const sliding_bone *is, double borne,
                    double dt, double u[3], double v[3]);
 

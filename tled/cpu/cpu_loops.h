@@ -57,8 +57,8 @@ struct tled_state {
     number *saved;      /* all fields, one after the other; made when first wanted, as are, of the fields of frames: */
     number *slot[TLED_SLOTS];
     bool spare_is_internal;
-    double time;        /* where the state stands */
-    double *now, *next; /* the curves' values */
+    double time;               /* where the state stands */
+    double *past, *now, *next; /* the curves' values: a step before now, now, and at the step's end */
     followers_work followers;
     films_work films;
     cpu_work work;
@@ -82,30 +82,6 @@ static void pass_work(void *context, int64_t chunk, int64_t from, int64_t to)
 static void boxes_pass(cpu_state *s)
 {
     pool_run(s->threads, s->rows.slabs, 1, pass_work, s);
-}
-
-/* What the probe pushes with, into the sums that the pass adds to. */
-typedef struct cpu_contact {
-    const cpu_state *s;
-    probe_placed at;
-    double up;
-} cpu_contact;
-
-static void contact_work(void *context, int64_t chunk, int64_t from, int64_t to)
-{
-    const cpu_contact *c = context;
-    const cpu_state *s = c->s;
-    (void)chunk;
-    for (int64_t n = from; n < to; n++) {
-        double x[3], push[3];
-        for (int a = 0; a < 3; a++)
-            x[a] =
-                s->p->position[3 * n + a] + (double)s->field[TLED_DISPLACEMENT][a * s->rows.nodes + s->rows.place[n]];
-        if (!collider_push(s->p->collider, &c->at, c->up, x, s->p->mass[n], push))
-            continue;
-        for (int a = 0; a < 3; a++)
-            s->sum[a * s->rows.nodes + s->rows.place[n]] = (number)-push[a];
-    }
 }
 
 static void followers_in(void *context, int64_t chunk, int64_t from, int64_t to)
@@ -138,6 +114,7 @@ static void press_followers(cpu_state *s)
     pool_run(s->threads, s->p->followers->nodes, FOLLOWERS_CHUNK, followers_out, s);
 }
 
+#include "tled/cpu/cpu_contact.h"
 #include "tled/cpu/cpu_films.h"
 #include "tled/cpu/cpu_sliding.h"
 
@@ -187,7 +164,8 @@ static int cpu_step(cpu_state *s, const tled_plan *plan, int64_t count, err *e)
             tled_curves(s->p, tled_time(plan, i + 1), s->next);
         run_pass(s, plan, tled_time(plan, i), (i > 0 ? PASS_FINISH : 0) | (i < count ? PASS_BEGIN : PASS_INTERNAL));
         if (i < count) {
-            double *swap = s->now;
+            double *swap = s->past;
+            s->past = s->now;
             s->now = s->next;
             s->next = swap;
         }
@@ -382,6 +360,7 @@ static void cpu_destroy(cpu_state *s)
     free(s->saved);
     for (int i = 0; i < TLED_SLOTS; i++)
         free(s->slot[i]);
+    free(s->past);
     free(s->now);
     free(s->next);
     followers_room_free(&s->followers);
@@ -423,7 +402,8 @@ static int allocate_script(cpu_state *s, err *e)
     const int64_t curves = s->p->script->curves;
     s->now = mem_array(curves, 3 * sizeof *s->now, "the solver", e);
     s->next = mem_array(curves, 3 * sizeof *s->next, "the solver", e);
-    return s->now && s->next ? followers_room(&s->followers, s->p->followers, e) : -1;
+    s->past = mem_array(curves, 3 * sizeof *s->past, "the solver", e);
+    return s->now && s->next && s->past ? followers_room(&s->followers, s->p->followers, e) : -1;
 }
 
 static int allocate(cpu_state *s, err *e)
@@ -523,6 +503,7 @@ static void make_work(cpu_state *s)
 
 static int cpu_reload(cpu_state *s, err *e)
 {
+    free(s->past);
     free(s->now);
     free(s->next);
     followers_room_free(&s->followers);

@@ -6,7 +6,7 @@ enum { SLIDING_CHUNK = 512 };
 typedef struct cpu_slider {
     int64_t row, at; /* in the sliding; in the rows' order */
     int64_t node;
-    sliding_bone was, is; /* now, and at the step's end */
+    sliding_bone past, was, is; /* a step before now, now, and at the step's end */
 } cpu_slider;
 
 /* What the script displaces of it goes where that says. */
@@ -35,6 +35,8 @@ static void move_slider(cpu_state *s, const cpu_slider *c, double u[3], double v
     for (int i = 0; i < 3; i++)
         if (p->hold[3 * c->node + i] == HOLD_FREE && w->what & PASS_FINISH)
             v[i] = v[i] * (1 - drag) + w->dt / 2 * a[i];
+    if (w->what & PASS_FINISH)
+        sliding_rub(p, c->row, &c->past, &c->was, borne, w->dt, u, v);
     if (!(w->what & PASS_BEGIN))
         return;
     for (int i = 0; i < 3; i++)
@@ -55,6 +57,7 @@ static void slide_work(void *context, int64_t chunk, int64_t from, int64_t to)
         cpu_slider c = {.row = i, .node = of->node[i], .at = s->rows.place[of->node[i]]};
         double u[3], v[3], sum[3];
         c.was = sliding_bone_at(of, of->of[i], s->now);
+        c.past = s->work.what & PASS_FINISH ? sliding_bone_at(of, of->of[i], s->past) : c.was;
         c.is = s->work.what & PASS_BEGIN ? sliding_bone_at(of, of->of[i], s->next) : c.was;
         for (int a = 0; a < 3; a++) {
             u[a] = (double)s->field[TLED_DISPLACEMENT][a * s->rows.nodes + c.at];
