@@ -2,11 +2,12 @@
 
 #include "base/mem.h"
 #include "base/near.h"
-#include "base/path.h"
 #include "mesh/lattice.h"
 #include "surface/pseudonormal.h"
 #include "surface/scale.h"
-#include "surface/solid.h"
+#include "surface/surface.h"
+#include "surface/surface_region.h"
+#include "surface/triangle_tree.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -40,65 +41,6 @@ typedef struct slider {
     err *e;
 } slider;
 
-/* ---- regions */
-
-/* Where nodes may slide: everywhere, inside of a closed surface, or in a box. */
-typedef struct region {
-    triangle_tree *within;
-    double box[6];
-    bool is_box;
-} region;
-
-static bool region_has(const region *g, const double x[3])
-{
-    if (g->within)
-        return triangle_tree_holds(g->within, x);
-    for (int a = 0; a < 3 && g->is_box; a++)
-        if (x[a] < g->box[a] || x[a] > g->box[3 + a])
-            return false;
-    return true;
-}
-
-static int read_solid(region *g, const char *option, const char *file, num_unit unit, err *e)
-{
-    trimesh b = {0};
-    err found = {0};
-    int failed = solid_read(&b, file, scale_of(unit), &found);
-    if (failed)
-        err_set(e, NULL, 0, "%s: %.600s", option, found.text);
-    else
-        failed = (g->within = triangle_tree_create(b.position, b.corner, b.triangles, e)) ? 0 : -1;
-    trimesh_free(&b);
-    return failed ? -1 : 0;
-}
-
-static int read_box(region *g, const char *option, const char *text, num_unit unit, err *e)
-{
-    num_length list[6];
-    if (num_lengths_of(text, list, 6) != 6)
-        return err_usage(e, "%s '%.200s': expected a region X0,Y0,Z0,X1,Y1,Z1, lengths, or FILE.obj, a closed surface",
-                         option, text);
-    for (int i = 0; i < 6; i++)
-        g->box[i] = num_length_in(list[i], unit, num_unit_of("m"));
-    for (int a = 0; a < 3; a++)
-        if (!(g->box[a] < g->box[3 + a]))
-            return err_usage(e, "%s '%.200s': the box is empty; expected X0,Y0,Z0,X1,Y1,Z1 with X0 below X1 and so on",
-                             option, text);
-    g->is_box = true;
-    return 0;
-}
-
-static int region_read(region *g, const slider *s, const char *option, const char *text)
-{
-    const num_unit unit = text ? scale_unit(NULL, s->m, s->e) : num_unit_of("m");
-    *g = (region){.is_box = false};
-    if (!unit)
-        return -1;
-    if (!text)
-        return 0;
-    return path_is_obj(text) ? read_solid(g, option, text, unit, s->e) : read_box(g, option, text, unit, s->e);
-}
-
 /* ---- which nodes */
 
 static int find_surface(const slider *s, const char *option, const char *name, bool *is)
@@ -120,7 +62,7 @@ static int find_surfaces(const slider *s, const char *option, const char *text, 
     char name[MODEL_NAME];
     for (const char *p = text; p < text + length;) {
         const size_t rest = (size_t)(text + length - p), comma = strcspn(p, ","), n = comma < rest ? comma : rest;
-        if (!n || n >= sizeof name)
+        if (!n || n >= sizeof name || n + 1 == rest)
             return err_usage(s->e, "%s '%.200s': expected names of rigid surfaces between commas", option, text);
         snprintf(name, sizeof name, "%.*s", (int)n, p);
         if (find_surface(s, option, name, is))
@@ -130,14 +72,14 @@ static int find_surfaces(const slider *s, const char *option, const char *text, 
     return 0;
 }
 
-static int mark_nodes(slider *s, const char *option, const char *text, const bool *is, const region *g, int as)
+static int mark_nodes(slider *s, const char *option, const char *text, const bool *is, const uint8_t *inside, int as)
 {
     int64_t held = 0, marked = 0;
     for (int64_t n = 0; n < s->nodes; n++) {
         if (!s->rigid[n] || s->anchor[n] < 0 || !is[s->anchor[n]])
             continue;
         held++;
-        if (!region_has(g, s->position + 3 * n))
+        if (!inside[n])
             continue;
         s->mark[n] = (uint8_t)as;
         marked++;
@@ -157,16 +99,18 @@ static int take_option(slider *s, const char *option, const char *text, int as)
 {
     const char *colon = strchr(text, ':');
     const size_t length = colon ? (size_t)(colon - text) : strlen(text);
-    region g;
+    const num_unit unit = colon ? scale_unit(NULL, s->m, s->e) : num_unit_of("m");
+    if (!unit)
+        return -1;
     if (!length || (colon && !colon[1]))
         return err_usage(s->e, "%s '%.200s': expected SURFACE,...[:REGION], such as skull:lips.obj", option, text);
     bool *is = mem_array(s->r->surfaces + 1, sizeof *is, "the rigid surfaces", s->e);
-    int failed = !is || find_surfaces(s, option, text, length, is);
-    if (!failed) {
-        failed = region_read(&g, s, option, colon ? colon + 1 : NULL);
-        failed = failed || mark_nodes(s, option, text, is, &g, as);
-        triangle_tree_destroy(g.within);
-    }
+    uint8_t *inside = is ? mem_array(s->nodes, 1, "the nodes", s->e) : NULL;
+    const int failed = !inside || find_surfaces(s, option, text, length, is) ||
+                       surface_region_of_option(option, colon ? colon + 1 : NULL, unit, s->position, s->nodes,
+                                                s->threads, inside, s->e) ||
+                       mark_nodes(s, option, text, is, inside, as);
+    free(inside);
     free(is);
     return failed ? -1 : 0;
 }

@@ -1,6 +1,7 @@
 #include "surface/surface_region.h"
 
 #include "base/path.h"
+#include "surface/scale.h"
 #include "surface/solid.h"
 #include "surface/triangle_tree.h"
 
@@ -64,5 +65,40 @@ int surface_region_in_file(const char *file, double scale, const double *positio
     m.inside = inside;
     pool_run(threads, vertices, VERTICES, mark, &m);
     triangle_tree_destroy(body);
+    return 0;
+}
+
+static int box_of_option(const char *option, const char *text, num_unit unit, double box[6], err *e)
+{
+    num_length list[6];
+    if (num_lengths_of(text, list, 6) != 6)
+        return err_usage(e, "%s '%.200s': expected a region X0,Y0,Z0,X1,Y1,Z1, lengths, or FILE.obj, a closed surface",
+                         option, text);
+    for (int i = 0; i < 6; i++)
+        box[i] = num_length_in(list[i], unit, num_unit_of("m"));
+    for (int a = 0; a < 3; a++)
+        if (!(box[a] < box[3 + a]))
+            return err_usage(e, "%s '%.200s': the box is empty; expected X0,Y0,Z0,X1,Y1,Z1 with X0 below X1 and so on",
+                             option, text);
+    return 0;
+}
+
+int surface_region_of_option(const char *option, const char *text, num_unit unit, const double *position,
+                             int64_t vertices, pool *threads, uint8_t *inside, err *e)
+{
+    double box[6];
+    err found = {0};
+    if (!text) {
+        memset(inside, 1, (size_t)vertices);
+        return 0;
+    }
+    if (path_is_obj(text)) {
+        if (!surface_region_in_file(text, scale_of(unit), position, vertices, 1, threads, inside, &found))
+            return 0;
+        return err_set(e, NULL, 0, "%s: %.600s", option, found.text);
+    }
+    if (box_of_option(option, text, unit, box, e))
+        return -1;
+    surface_region_in_box(position, vertices, box, inside);
     return 0;
 }

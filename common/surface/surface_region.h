@@ -5,6 +5,7 @@
 #ifndef SINEW_SURFACE_REGION_H
 #define SINEW_SURFACE_REGION_H
 
+#include "base/num.h"
 #include "base/pool.h"
 
 /* Whether it is a box; path_is_obj() says whether it is an OBJ. */
@@ -19,5 +20,10 @@ void surface_region_in_box(const double *position, int64_t vertices, const doubl
  * is open. */
 int surface_region_in_file(const char *file, double scale, const double *position, int64_t vertices, double metre,
                            pool *threads, uint8_t *inside, err *e);
+
+/* The region that follows a ':' in an option's value: a box of lengths or an OBJ, in that unit; NULL: everywhere.
+ * Positions are in m. -1 with e filled, in the option's name, where it is neither. */
+int surface_region_of_option(const char *option, const char *text, num_unit unit, const double *position,
+                             int64_t vertices, pool *threads, uint8_t *inside, err *e);
 
 #endif
