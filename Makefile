@@ -178,7 +178,7 @@ endef
 $(eval $(call tool,voxelise,$(VOXELISE_SRC),$$(EMBREE)))
 $(eval $(call tool,attach,$(ATTACH_SRC)))
 $(eval $(call tool,bind,bind/bind.c $(BIND_MODULES),$$(EMBREE)))
-$(eval $(call tool,sinew-deform,bind/sinew-deform.c $(filter-out bind/side.c,$(BIND_MODULES))))
+$(eval $(call tool,sinew-deform,bind/sinew-deform.c $(filter-out bind/side.c bind/touch.c bind/touch_%.c,$(BIND_MODULES))))
 $(eval $(call tool,tled-run,$(TLED_SRC),,$(LIB_CUDA),$(CUDA_LIBS)))
 $(eval $(call tool,msds-mesh,$(MSDS_MESH_SRC)))
 $(eval $(call tool,msds-run,$(MSDS_RUN_SRC),,$(LIB_CUDA),$(CUDA_LIBS)))

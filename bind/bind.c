@@ -5,6 +5,7 @@
 #include "bind/nearest.h"
 #include "bind/side.h"
 #include "bind/tetra.h"
+#include "bind/touch.h"
 #include "mesh/hexahedron.h"
 #include "mesh/weights.h"
 #include "model/check.h"
@@ -23,6 +24,8 @@ struct options {
     const char *name;
     const char *unit;
     int motion;
+    opt_list self_contact;
+    opt_lengths contact_spacing;
 };
 
 enum { MOTION_BLENDED, MOTION_ELEMENT }; /* below 0: not given */
@@ -34,6 +37,10 @@ static const opt option_list[] = {
      "unit of the OBJ [default the model's]"},
     {OPT_ACTION, 0, "motion", "blended|element", OPT_CHOICE, TO(motion), 0, 0, "blended|element", 0,
      "in voxels: vertices move with the elements around theirs too, or with theirs alone [default blended]"},
+    {OPT_ACTION, 0, "self-contact", "SURFACE,...[:REGION]|auto", OPT_LIST, TO(self_contact), 0, 0, "auto", OPT_NAMED,
+     "skin that may touch itself; region: FILE.obj or X0,Y0,Z0,X1,Y1,Z1; auto: about slits"},
+    {OPT_ACTION, 0, "contact-spacing", "LENGTH", OPT_LENGTHS, TO(contact_spacing), 0, 1, NULL, 0,
+     "how far apart samples of it may be [default a voxel]"},
     {0},
 };
 
@@ -353,6 +360,29 @@ static int bind_carried(const tool *t, target *to, model *m, const struct option
     return 0;
 }
 
+/* Once the model carries the surfaces. */
+static int touch_itself(const tool *t, const target *to, model *m, const struct options *o, int threads,
+                        notes *warnings, err *e)
+{
+    touch_skin_options with = {.regions = &o->self_contact};
+    touch_found found;
+    if (!o->self_contact.count)
+        return 0;
+    if (!to->by_lattice)
+        return err_set(e, NULL, 0, "--self-contact: the elements are no voxels; expected a model of voxels");
+    if (o->contact_spacing.count) {
+        const num_unit unit = scale_unit(o->unit, m, e);
+        if (!unit)
+            return -1;
+        with.apart = num_length_in(o->contact_spacing.value[0], unit, num_unit_of("m"));
+    }
+    if (touch_make(m, &to->sides, &with, threads, to->threads, &found, warnings, e))
+        return -1;
+    tool_say(t, "self-contact: %lld samples of skin; distances at %lld nodes, off at samples by %.2g voxels at most",
+             (long long)found.samples, (long long)found.nodes, found.worst / length_of(to, 0));
+    return 0;
+}
+
 static int check_options(const struct options *o, int count, char *const *path, err *e)
 {
     if (o->name && check_surface_name(o->name, e))
@@ -362,6 +392,10 @@ static int check_options(const struct options *o, int count, char *const *path, 
             return err_usage(e, "'-': the model comes on standard input; expected the name of an OBJ file");
     if (count > 1 && o->name)
         return err_usage(e, "--name names one surface, but %d files are given", count);
+    if (o->contact_spacing.count && !o->self_contact.count)
+        return err_usage(e, "--contact-spacing is for samples of --self-contact, which is not given");
+    if (o->contact_spacing.count && !(o->contact_spacing.value[0].value > 0))
+        return err_usage(e, "--contact-spacing: expected a length above 0");
     if (!count && o->unit)
         return err_usage(e, "--unit is for an OBJ, and none is given; surfaces in the model are in metres");
     return 0;
@@ -387,6 +421,8 @@ static int run_tool(int argc, char **argv)
         goto out;
     if (t.operands ? bind_files(&t, &to, &m, argv + 1, &o, &warnings, &e)
                    : bind_carried(&t, &to, &m, &o, &warnings, &e))
+        goto out;
+    if (touch_itself(&t, &to, &m, &o, threads, &warnings, &e))
         goto out;
     if (!stage_write(&s, &m, &e))
         stage_copy_frames(&s, &m, &e);

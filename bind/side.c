@@ -98,11 +98,11 @@ int side_create(side *s, const model *m, const nearest *to, int threads, err *e)
     const char *name = model_meta_of(m, surface_key), *groups = model_meta_of(m, groups_key);
     const model_array *inside = model_find(m, "element.inside");
     surface from;
-    *s = (side){.to = to};
+    *s = (side){.to = to, .cell = model_find(m, "element.lattice")->i32, .inside = inside ? inside->f32 : NULL};
+    if (cut_moments_of(&s->cut, m, e))
+        return -1;
     if (!name || !groups)
         return 0;
-    s->cell = model_find(m, "element.lattice")->i32;
-    s->inside = inside ? inside->f32 : NULL;
     if (surface_of(m, name, &from, e))
         return -1;
     s->surface = embree_create(threads, e);
@@ -122,12 +122,13 @@ void side_free(side *s)
 
 /* ---- which way normals point */
 
-/* A place of an element that the surfaces enclose. */
-static void place_in(const side *s, int32_t element, double *place)
+void side_place(const side *s, int32_t element, double place[3])
 {
     const lattice *l = &s->to->grid;
+    const float *middle = s->inside || !s->cut.count ? NULL : cut_moments_at(&s->cut, element);
     for (int a = 0; a < 3; a++) {
-        const double at = s->inside ? (double)s->inside[3 * (int64_t)element + a] : .5;
+        const double half = middle ? (double)middle[a] / 2 : 0;
+        const double at = s->inside ? (double)s->inside[3 * (int64_t)element + a] : .5 + half;
         place[a] = l->origin[a] + l->spacing[a] * (s->cell[3 * (int64_t)element + a] + at);
     }
 }
@@ -135,7 +136,7 @@ static void place_in(const side *s, int32_t element, double *place)
 static double inward(const side *s, int32_t element, const double *point, const double *normal)
 {
     double place[3], sum = 0;
-    place_in(s, element, place);
+    side_place(s, element, place);
     for (int a = 0; a < 3; a++)
         sum += (place[a] - point[a]) * normal[a];
     return sum;
@@ -189,12 +190,10 @@ double *side_normals(const side *s, const surface *of, const model *m, err *e)
 
 /* ---- one point */
 
-static bool sees(const side *s, int32_t element, const double *point)
+bool side_sees(const embree *faces, const double place[3], const double point[3], double near)
 {
-    const double *h = s->to->grid.spacing, shortest = fmin(h[0], fmin(h[1], h[2]));
-    double place[3], length = 0;
+    double length = 0;
     embree_packet p;
-    place_in(s, element, place);
     embree_packet_clear(&p);
     for (int a = 0; a < 3; a++) {
         p.from[a][0] = (float)place[a];
@@ -202,12 +201,20 @@ static bool sees(const side *s, int32_t element, const double *point)
         length += (point[a] - place[a]) * (point[a] - place[a]);
     }
     length = sqrt(length);
-    if (length <= own * shortest)
+    if (length <= near)
         return true;
     p.start[0] = 0;
-    p.end[0] = (float)(1 - own * shortest / length);
-    embree_blocked(s->surface, 1, &p, false);
+    p.end[0] = (float)(1 - near / length);
+    embree_blocked(faces, 1, &p, false);
     return p.end[0] >= 0;
+}
+
+static bool sees(const side *s, int32_t element, const double *point)
+{
+    const double *h = s->to->grid.spacing;
+    double place[3];
+    side_place(s, element, place);
+    return side_sees(s->surface, place, point, own * fmin(h[0], fmin(h[1], h[2])));
 }
 
 typedef struct candidate {

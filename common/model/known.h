@@ -144,6 +144,13 @@ typedef struct known {
       "samples along x, y and z, a voxel apart")                                                                       \
     X("distance.value", MODEL_F32, "m", "distance", 1, 1, 0, KNOWN_FINITE, 0, 0, "attach",                             \
       "distance from the bone, above 0 in the tissue: field after field, x fastest, then y")                           \
+    X("contact.element", MODEL_I32, "@element", "contact", 1, 1, KNOWN_EVERY, KNOWN_ANY, 0, 0, "bind",                 \
+      "element that a sample of skin, which may touch itself, is bound to")                                            \
+    X("contact.weight", MODEL_F64, "1", "contact", 3, 3, 0, KNOWN_FINITE, 0, 0, "bind", "its 3 weights (W&M eq. 1)")   \
+    X("skin.node", MODEL_I32, "@node", "skin", 1, 1, KNOWN_EVERY, KNOWN_ANY, 0, 0, "bind",                             \
+      "node about that skin; ascending")                                                                               \
+    X("skin.distance", MODEL_F32, "m", "skin", 1, 1, 0, KNOWN_FINITE, 0, 0, "bind",                                    \
+      "how far it is from the skin of its own part of the tissue, above 0 outside")                                    \
     X("probe-vertex.position", MODEL_F64, "m", "probe-vertex", 3, 3, 0, KNOWN_FINITE, 0, 0, "msds-run or tled-run",    \
       "of a convex probe: a corner, in the probe's frame")                                                             \
     X("probe-face.vertex", MODEL_I32, "@probe-vertex", "probe-face", 3, 3, KNOWN_EVERY, KNOWN_ANY, 0, 0,               \
