@@ -270,6 +270,8 @@ static void note_omissions(const writer *w, const model *m, notes *warnings)
                   "element.mix is not in the file, which has no place for it: elements are of one volume there");
     if (model_find(m, "slide.node"))
         notes_add(warnings, "slide.node is not in the file: nodes that slide on bone are free there");
+    if (model_find(m, "contact.element"))
+        notes_add(warnings, "contact.element is not in the file: skin does not touch itself there");
     for (int k = 0; k < MATERIAL_ELEMENT_KEYS; k++)
         if (model_find(m, material_elements_arrays[k]))
             notes_add(warnings,

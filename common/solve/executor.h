@@ -24,7 +24,8 @@
     X(CUTS, "mean strain of cut elements")                                                                             \
     X(BORDERS, "laminates of two volumes")                                                                             \
     X(FILMS, "films on bone (attach --surface)")                                                                       \
-    X(SLIDING, "nodes that slide on bone (attach --slide)")
+    X(SLIDING, "nodes that slide on bone (attach --slide)")                                                            \
+    X(SELF_CONTACT, "skin that touches itself (bind --self-contact)")
 
 enum executor_feature {
 #define EXECUTOR_NUMBER(name, words) EXECUTOR_NUMBER_##name,

@@ -201,6 +201,15 @@ int mesh_split(model *m, notes *warnings, err *e)
     if (cut_cells(&s, m, e) || keep(&s, m, e) || !s.node)
         goto out;
     note_bound(m, warnings);
+    if (model_find(m, "slide.node"))
+        notes_add(warnings, "nodes that slide on bone (attach --slide) are free in tetrahedra");
+    if (model_find(m, "contact.element"))
+        notes_add(warnings, "skin that touches itself (bind --self-contact) does not in tetrahedra");
+    model_axis_drop(m, "slide", warnings);
+    model_axis_drop(m, "field", warnings);
+    model_axis_drop(m, "distance", warnings);
+    model_axis_drop(m, "contact", warnings);
+    model_axis_drop(m, "skin", warnings);
     model_remove_all(m, is_weight, NULL); /* in hexahedra, they mean nothing without the elements */
     model_axis_drop(m, "element", warnings);
     model_axis_drop(m, "bone", warnings);

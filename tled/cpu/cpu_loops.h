@@ -7,6 +7,7 @@
  * they are cut: the same bytes for any number of threads, and in any of the processor's instruction sets.
  */
 #include "base/mem.h"
+#include "tled/contact/self_contact.h"
 #include "tled/contact/sliding.h"
 #include "tled/cpu/cpu_pass.h"
 #include "tled/problem/collider.h"
@@ -61,6 +62,7 @@ struct tled_state {
     double *past, *now, *next; /* the curves' values: a step before now, now, and at the step's end */
     followers_work followers;
     films_work films;
+    self_contact_work *skin; /* NULL: no skin touches itself */
     cpu_work work;
 };
 
@@ -116,6 +118,7 @@ static void press_followers(cpu_state *s)
 
 #include "tled/cpu/cpu_contact.h"
 #include "tled/cpu/cpu_films.h"
+#include "tled/cpu/cpu_self_contact.h"
 #include "tled/cpu/cpu_sliding.h"
 
 /* One pass at the displacements of now, with the curves' values of now and of the step's end. */
@@ -145,6 +148,8 @@ static void run_pass(cpu_state *s, const tled_plan *plan, double time, int what)
     s->method->pass(s);
     if (s->p->sliding)
         move_sliding(s);
+    if (s->skin && what & PASS_BEGIN)
+        touch_skin(s);
     s->spare_is_internal = (what & PASS_INTERNAL) != 0;
     if (what & PASS_BEGIN) {
         number *swap = s->field[TLED_DISPLACEMENT];
@@ -327,7 +332,8 @@ static int64_t cpu_bytes(const cpu_state *s)
         numbers += s->slot[i] ? numbers_of(s, FIELD_IN_FRAMES) : 0;
     return numbers * (int64_t)sizeof(number) + r->nodes * (7 * (int64_t)sizeof(number) + 1 + 4) +
            r->runs * (int64_t)sizeof *r->run + r->cells * (cells * (int64_t)sizeof(number) + 4) + s->mesh_bytes +
-           cut_bytes(s) + border_bytes(s) + followers_bytes(s->p->followers) + films_bytes(s->p->films);
+           cut_bytes(s) + border_bytes(s) + followers_bytes(s->p->followers) + films_bytes(s->p->films) +
+           self_contact_bytes(s->skin);
 }
 
 /* ---- life */
@@ -365,6 +371,7 @@ static void cpu_destroy(cpu_state *s)
     free(s->next);
     followers_room_free(&s->followers);
     films_room_free(&s->films);
+    self_contact_room_free(s->skin);
     free(s);
 }
 
@@ -411,7 +418,8 @@ static int allocate(cpu_state *s, err *e)
     const int64_t nodes = s->rows.nodes;
     if (allocate_fields(s, e) || make_numbers(&s->spare, nodes, 3, e) || make_numbers(&s->sum, nodes, 3, e) ||
         make_numbers(&s->mass_inverse, nodes, 1, e) || allocate_cells(s, e) || cut_allocate(s, e) ||
-        border_allocate(s, e) || films_room(&s->films, s->p, e))
+        border_allocate(s, e) || films_room(&s->films, s->p, e) ||
+        (s->p->self_contact && !(s->skin = self_contact_room(s->p, e))))
         return -1;
     s->kind = mem_array(s->p->volumes, (size_t)cpu_kind_numbers(s->p->form) * sizeof *s->kind, "the solver", e);
     s->flags = mem_array(nodes, 1, "the solver", e);
@@ -567,7 +575,7 @@ enum { CPU_FEATURES = EXECUTOR_USUAL | EXECUTOR_CONTACT | EXECUTOR_FOLLOWERS };
 
 const tled_executor CPU_EXECUTOR = {
     .is = {.device = "cpu",
-           .features = CPU_FEATURES | EXECUTOR_BORDERS | EXECUTOR_FILMS | EXECUTOR_SLIDING,
+           .features = CPU_FEATURES | EXECUTOR_BORDERS | EXECUTOR_FILMS | EXECUTOR_SLIDING | EXECUTOR_SELF_CONTACT,
            .forms = (1U << FORM_STEPPED) - 1,
            .unusable = cpu_unusable},
     .create = boxes_create,

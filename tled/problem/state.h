@@ -82,18 +82,19 @@ typedef struct tled_problem {
     bool curved;           /* that any volume's muscle has curves of its own */
     bool serial;           /* that any is in series with a spring: the state then has contractile elements */
     const script *script;
-    int64_t gravity;                   /* its curve, or -1 */
-    double start;                      /* s: the model's time at the start */
-    int32_t spare_curves, spare_nodes; /* live: room that an executor may keep for what lines add; 0: none */
-    fields fields;                     /* what a state consists of */
-    field_values at_start;             /* and the one that the run begins from: m, m/s */
-    const struct collider *collider;   /* what presses (collider.h), or NULL */
-    struct bodies *bodies;             /* the model's rigid bodies (bodies.h), owned; NULL: none */
-    struct films *films;               /* of tissue on bone (films.h), owned; NULL: none */
-    struct followers *followers;       /* the script's pressures (followers.h), owned; NULL: none */
-    struct sliding *sliding;           /* nodes that slide on bone (contact/sliding.h); NULL: none does */
-    const int32_t *slide;              /* slides: these nodes, borrowed; and: */
-    const uint8_t *slide_lifts;        /* which of them may come off; NULL: none may */
+    int64_t gravity;                         /* its curve, or -1 */
+    double start;                            /* s: the model's time at the start */
+    int32_t spare_curves, spare_nodes;       /* live: room that an executor may keep for what lines add; 0: none */
+    fields fields;                           /* what a state consists of */
+    field_values at_start;                   /* and the one that the run begins from: m, m/s */
+    const struct collider *collider;         /* what presses (collider.h), or NULL */
+    struct bodies *bodies;                   /* the model's rigid bodies (bodies.h), owned; NULL: none */
+    struct films *films;                     /* of tissue on bone (films.h), owned; NULL: none */
+    struct followers *followers;             /* the script's pressures (followers.h), owned; NULL: none */
+    struct sliding *sliding;                 /* nodes that slide on bone (contact/sliding.h); NULL: none does */
+    const struct self_contact *self_contact; /* skin that touches itself (contact/self_contact.h); NULL: none does */
+    const int32_t *slide;                    /* slides: these nodes, borrowed; and: */
+    const uint8_t *slide_lifts;              /* which of them may come off; NULL: none may */
     int64_t slides;
 } tled_problem;
 

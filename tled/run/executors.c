@@ -56,9 +56,10 @@ executor_need tled_need(const tled_problem *p)
     const uint32_t laminates = p->borders.count ? EXECUTOR_BORDERS : 0;
     const uint32_t films = p->films ? EXECUTOR_FILMS : 0;
     const uint32_t sliding = p->sliding ? EXECUTOR_SLIDING : 0;
+    const uint32_t skin = p->self_contact ? EXECUTOR_SELF_CONTACT : 0;
     const tled_volume *wants = volume_that_wants(p);
     executor_need need = {.features = meshes | contact | followers | mixtures | curves | fibres | series | cuts |
-                                      laminates | films | sliding | features_of(p->form),
+                                      laminates | films | sliding | skin | features_of(p->form),
                           .form = UINT32_C(1) << p->form,
                           .volume = wants ? wants->name : NULL};
     for (int f = 0; f < FORM_COUNT; f++) {

@@ -7,6 +7,7 @@
 #define SINEW_FINGERPRINT_H
 
 #include "model/model.h"
+#include "tled/contact/self_contact.h"
 #include "tled/contact/sliding.h"
 #include "tled/problem/collider.h"
 #include "tled/run/run.h"

@@ -395,8 +395,26 @@ static int say_control(model *m, hourglass_control control, err *e)
 
 static int check_friction(const session *s, const struct options *o, err *e)
 {
-    if (o->friction > 0 && !s->problem.sliding)
-        return err_option(e, "--friction", "no node of the model slides on bone; expected some (attach --slide)");
+    if (o->friction > 0 && !s->problem.sliding && !s->problem.self_contact)
+        return err_option(e, "--friction",
+                          "no node of the model slides on bone, and no skin touches itself; expected "
+                          "some (attach --slide, bind --self-contact)");
+    return 0;
+}
+
+/* Residuals have in them what presses skin that touches itself, so that they do not come to nothing. */
+static int check_skin(session *s, err *e)
+{
+    const self_contact *c = s->problem.self_contact;
+    if (c && s->run.rest >= 0)
+        return err_option(e, "--rest",
+                          "of skin that touches itself it is not known when it is at rest; expected -t or -n");
+    if (c && c->deep)
+        notes_add(
+            &s->warnings,
+            "%lld of %lld samples of skin are deeper in other tissue at rest than %g of a voxel, the deepest %.4g "
+            "mm: they touch where they are deeper than that",
+            (long long)c->deep, (long long)c->samples, SELF_CONTACT_DEEP, 1e3 * c->deepest);
     return 0;
 }
 
@@ -406,8 +424,9 @@ static int prepare(session *s, const struct options *o, char *device, size_t siz
     s->run.rest = o->rest >= 0 ? o->rest : o->seconds < 0 && !o->steps && !s->live ? rest_tolerance : -1;
     if (change_materials(s, o, e) || read_collider(s, o, e) || make_script(s, o, e) ||
         tled_problem_make(&s->problem, &s->m, &s->script, o->control, e) || say_control(&s->m, o->control, e) ||
-        sliding_make(&s->sliding, &s->problem, &s->m, o->friction, e) || check_friction(s, o, e) ||
-        support_of(&s->problem, &s->support, e) ||
+        sliding_make(&s->sliding, &s->problem, &s->m, o->friction, e) ||
+        self_contact_make(&s->skin, &s->problem, &s->m, o->friction, NULL, e) || check_friction(s, o, e) ||
+        check_skin(s, e) || support_of(&s->problem, &s->support, e) ||
         support_check(&s->support, &s->problem, s->run.rest >= 0, s->collider.poses, &s->warnings, e))
         return -1;
     loads_check(&s->problem, &s->m, &s->warnings);
@@ -539,6 +558,7 @@ out:
     tled_problem_free(&s.problem);
     collider_free(&s.collider);
     sliding_free(&s.sliding);
+    self_contact_free(&s.skin);
     script_free(&s.script);
     expressions_free(&s.expressions);
     model_free(&s.m);

@@ -64,6 +64,8 @@ static void add_run(list *l, const session *s, double rate)
     add(l, "unit", "%s", s->script.unit ? s->script.unit : "source.unit");
     if (s->problem.sliding)
         add_number(l, "friction", s->problem.sliding->friction);
+    else if (s->problem.self_contact)
+        add_number(l, "friction", s->problem.self_contact->friction);
     if (s->collider.poses) {
         add_number(l, "contact", s->collider.stiffness);
         add_number(l, "ramp", live_ramp(s->live));

@@ -7,6 +7,7 @@
 #include "cli/progress.h"
 #include "model/stage.h"
 #include "results/results.h"
+#include "tled/contact/self_contact.h"
 #include "tled/contact/sliding.h"
 #include "tled/problem/collider.h"
 #include "tled/problem/followers.h"
@@ -26,6 +27,7 @@ typedef struct session {
     support support;
     collider collider;
     sliding sliding;
+    self_contact skin; /* that touches itself */
     pool *threads;
     run_setup run;
     run_log log;

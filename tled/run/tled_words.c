@@ -22,6 +22,9 @@ void words_start(const session *s, const char *device, const struct options *o)
         tool_say(s->t, "%lld films hang on bone", (long long)films_count(p));
     if (p->sliding)
         tool_say(s->t, "%lld nodes slide on bone, friction %g", (long long)p->sliding->count, p->sliding->friction);
+    if (p->self_contact)
+        tool_say(s->t, "%lld samples of skin may touch %lld elements, friction %g", (long long)p->self_contact->samples,
+                 (long long)p->self_contact->elements, p->self_contact->friction);
     const int64_t least = cut_least(p);
     if (least)
         tool_say(s->t, "%lld cut element%s, of which less than %g is enclosed, the mass is that of %g",

@@ -1,0 +1,56 @@
+/* What a step of skin that touches itself works in (self_contact.h): where nodes are, which elements samples may be in,
+ * and what touches. The creator owns it.
+ */
+#ifndef SINEW_CONTACT_ROOM_H
+#define SINEW_CONTACT_ROOM_H
+
+#include "tled/contact/self_contact.h"
+
+enum { CANDIDATES = 64 }; /* of an element: those that its samples may be in */
+
+/* A sample in an element that it is no part of. */
+typedef struct touch {
+    int32_t sample, element; /* rows */
+    double share[8];         /* of the place's nodes */
+    double normal[3], off;   /* off: g - g0, m */
+    double part[2];          /* of the sample's side and of the place's: they sum to 1 */
+    double width;            /* no less than the sum of what units of lambda at all contacts move this one by */
+    double fresh, lambda;    /* beta; m */
+    double rubbed[3];        /* m/s: by friction */
+} touch;
+
+struct self_contact_work {
+    const tled_problem *p;
+    const self_contact *c;
+    double *u, *v;  /* nodes x 3 */
+    double *x;      /* nodes x 3, m: where they are */
+    double *listed; /* nodes x 3, m: where they were when candidates were listed */
+    double *change; /* nodes x 3, m */
+    double *sum;    /* nodes: of shares */
+    bool is_listed;
+    double *sampled;            /* elements x 6, m: the box of the samples of each; of none: low above high */
+    double *middle;             /* elements x 3: the skin's normal at their middles */
+    int32_t *count;             /* elements: those that their samples may be in */
+    int32_t *candidate;         /* elements x CANDIDATES: these, ascending */
+    int32_t *ring_start, *ring; /* elements + 1; nodes of the elements about each, ascending */
+    int32_t *near;              /* samples that have candidates */
+    int64_t nears;
+    double drift;  /* m: how far the fastest node has come since the start, step by step */
+    double *until; /* samples, m: by what drift one may touch */
+    touch *found;  /* samples; found[i].element < 0: near[i] touches nothing */
+    touch *touch;
+    int64_t touches;
+    /* The table: elements by the cells that their middles are in. */
+    int64_t cells; /* a power of two */
+    int32_t *start, *of, *cell;
+    double *low, *high; /* elements x 3, m */
+    double side;        /* m: of a cell, no less than half an element's longest side and a margin */
+};
+
+/* c: that of the problem, or one that is being made. NULL with e filled. */
+self_contact_work *contact_room_make(const tled_problem *p, const self_contact *c, err *e);
+
+/* For qsort and bsearch of int32_t. */
+int contact_by_number(const void *a, const void *b);
+
+#endif

@@ -1,0 +1,150 @@
+#include "tled/contact/contact_touch.h"
+
+#include "tled/contact/contact_near.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { SAMPLES_CHUNK = 32 };
+
+/* Skin touches skin that faces it: cosine between the normals. What comes in by the side of an edge is left alone until
+ * it is nearer to what it faces, or skin would catch on every edge that it slides under. */
+static const double facing = -.3;
+/* Elements that have a neighbour in common, about the end of a slit, are nearly one piece: they touch where they face
+ * each other, and not deeper than this, in shortest sides; others not deeper than that. */
+static const double near_facing = -.5, near_deep = .25, most_deep = .5;
+
+/* How far a normal is to be trusted, 0 to 1: a distance grows by 1 per m, but at an edge, where the normals of two
+ * faces are mixed, what is trilinear grows by less. */
+static double certainty(const self_contact_work *w, int32_t element, const double xi[3])
+{
+    const double slope = deformed_rest_slope(xi, &w->c->distance[element], w->p->side);
+    return slope < 1 ? slope * slope : 1;
+}
+
+/* The skin's normal at a sample, where it is: 0 where it has none. Returns its certainty. */
+static double normal_of(const self_contact_work *w, int64_t sample, double normal[3])
+{
+    const int32_t element = w->c->sample_element[sample];
+    const deformed_map d = contact_map(w, element);
+    double xi[3];
+    deformed_place_of_shares(w->c->share + 8 * sample, xi);
+    deformed_slope(&d, xi, &w->c->distance[element], normal);
+    return certainty(w, element, xi);
+}
+
+/* A candidate, and how far its middle is from a sample, squared. */
+typedef struct nearness {
+    double square;
+    int32_t element;
+} nearness;
+
+/* The candidates whose boxes hold x, the nearest middle first. */
+static int sort_candidates(const self_contact_work *w, int64_t sample, const double x[3], nearness *to)
+{
+    const int32_t element = w->c->sample_element[sample];
+    const int32_t *list = w->candidate + CANDIDATES * (int64_t)element;
+    int count = 0;
+    for (int32_t k = 0; k < w->count[element]; k++) {
+        if (!contact_in_box(w, list[k], x))
+            continue;
+        const deformed_map d = contact_map(w, list[k]);
+        const double square = deformed_from_middle(&d, x);
+        int at = count++;
+        for (; at > 0 && to[at - 1].square > square; at--)
+            to[at] = to[at - 1];
+        to[at] = (nearness){square, list[k]};
+    }
+    return count;
+}
+
+/* The element that holds a sample, or else the one that it is least outside of; -1: none within CONTACT_BEYOND. */
+static int32_t find_element(const self_contact_work *w, int64_t sample, const double x[3], double place[3])
+{
+    nearness list[CANDIDATES];
+    const int count = sort_candidates(w, sample, x, list);
+    double least = CONTACT_BEYOND;
+    int32_t found = -1;
+    for (int k = 0; k < count && least > 0; k++) {
+        double xi[3];
+        const deformed_map d = contact_map(w, list[k].element);
+        if (!deformed_place(&d, x, xi))
+            continue;
+        const double outside = deformed_outside(xi);
+        if (outside < least) {
+            least = outside;
+            found = list[k].element;
+            memcpy(place, xi, sizeof xi);
+        }
+    }
+    return found;
+}
+
+/* Of two sides that face each other the normal between, by how far each is to be trusted: skin that slides under an
+ * edge does not catch on it. */
+static void turn_normal(double normal[3], double sure, const double own[3], double own_sure)
+{
+    double square = 0;
+    for (int a = 0; a < 3; a++) {
+        normal[a] = sure * normal[a] - own_sure * own[a];
+        square += normal[a] * normal[a];
+    }
+    for (int a = 0; a < 3; a++)
+        normal[a] /= square > 0 ? sqrt(square) : 1;
+}
+
+/* Whether a sample is nearer to other skin than at rest; `clear`: how far it else is from that, m. */
+static bool find_touch(const self_contact_work *w, int64_t sample, touch *t, double *clear)
+{
+    const self_contact *c = w->c;
+    double x[3], place[3], own[3], dot = 0;
+    contact_place(w, sample, x);
+    t->sample = (int32_t)sample;
+    t->element = find_element(w, sample, x, place);
+    *clear = CONTACT_MARGIN * c->shortest;
+    if (t->element < 0)
+        return false;
+    const bool near = contact_have_neighbour(w, c->sample_element[sample], t->element);
+    const deformed_factors *distance = &c->distance[t->element];
+    const deformed_map d = contact_map(w, t->element);
+    deformed_shares(place, t->share);
+    const double slope = deformed_slope(&d, place, distance, t->normal);
+    if (!(slope > 0))
+        return false;
+    t->off = deformed_value(distance, place) / slope - c->rest[sample];
+    *clear = fmin(fmax(t->off, 0), *clear);
+    if (!(t->off < 0) || t->off < -(near ? near_deep : most_deep) * c->shortest)
+        return false;
+    const double sure = normal_of(w, sample, own), other = certainty(w, t->element, place);
+    for (int a = 0; a < 3; a++)
+        dot += own[a] * t->normal[a];
+    turn_normal(t->normal, other, own, sure);
+    return dot < (near ? near_facing : facing);
+}
+
+/* A sample and what it may touch both move, and by more where they are extrapolated: a share of what is clear. */
+static const double spare_way = 1. / 8;
+
+static void touch_work(void *context, int64_t chunk, int64_t from, int64_t to)
+{
+    const self_contact_work *w = context;
+    (void)chunk;
+    for (int64_t i = from; i < to; i++) {
+        const int32_t sample = w->near[i];
+        double clear = 0;
+        if (w->drift < w->until[sample] || !find_touch(w, sample, &w->found[i], &clear))
+            w->found[i].element = -1;
+        if (clear > 0)
+            w->until[sample] = w->drift + spare_way * clear;
+    }
+}
+
+void contact_touches(self_contact_work *w, pool *threads)
+{
+    contact_near_list(w, threads);
+    pool_run(threads, w->nears, SAMPLES_CHUNK, touch_work, w);
+    w->touches = 0;
+    for (int64_t i = 0; i < w->nears; i++)
+        if (w->found[i].element >= 0)
+            w->touch[w->touches++] = w->found[i];
+}

@@ -1,0 +1,371 @@
+#include "tled/contact/self_contact.h"
+
+#include "base/mem.h"
+#include "mesh/weights.h"
+#include "tled/contact/contact_room.h"
+#include "tled/contact/contact_touch.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { PASSES = 4 };
+
+/* Of an element's shortest side: what depth from before is taken back in a step at most. */
+static const double recovered = 1e-3;
+
+/* ---- from the model */
+
+typedef struct reader {
+    self_contact *c;
+    const tled_problem *p;
+    const int32_t *of;    /* samples: elements of the model */
+    const double *weight; /* samples x 3 */
+    int64_t distances;
+    const int32_t *at; /* distances: nodes of the model */
+    const float *value;
+    int32_t *row; /* nodes of the model: of `at`, or -1 */
+    err *e;
+} reader;
+
+static int find_arrays(reader *r, const model *m)
+{
+    const model_array *element = model_need(m, "contact.element", r->e),
+                      *weight = model_need(m, "contact.weight", r->e);
+    const model_array *node = model_need(m, "skin.node", r->e), *value = model_need(m, "skin.distance", r->e);
+    if (!element || !weight || !node || !value)
+        return -1;
+    r->c->samples = element->rows;
+    r->of = element->i32;
+    r->weight = weight->f64;
+    r->distances = node->rows;
+    r->at = node->i32;
+    r->value = value->f32;
+    r->row = mem_array(r->p->nodes, sizeof *r->row, "the skin", r->e);
+    if (!r->row)
+        return -1;
+    for (int64_t n = 0; n < r->p->nodes; n++)
+        r->row[n] = -1;
+    for (int64_t i = 0; i < r->distances; i++) {
+        if (r->at[i] < 0 || (i && r->at[i] <= r->at[i - 1]))
+            return err_set(r->e, NULL, 0, "skin.node, row %lld, is %d; expected nodes in ascending order", (long long)i,
+                           r->at[i]);
+        if (!isfinite(r->value[i]))
+            return err_set(r->e, NULL, 0, "skin.distance, row %lld, is not finite; expected a distance in m",
+                           (long long)i);
+        r->row[r->at[i]] = (int32_t)i;
+    }
+    return 0;
+}
+
+/* Whether all nodes of an element have distances, and some are inside: samples may then be in it. */
+static bool has_distances(const reader *r, int64_t element)
+{
+    bool inside = false;
+    for (int i = 0; i < 8; i++) {
+        const int32_t row = r->row[r->p->element_node[8 * element + i]];
+        if (row < 0)
+            return false;
+        inside |= r->value[row] < 0;
+    }
+    return inside;
+}
+
+/* Elements that samples may be in or are bound to: `rank` gets their rows, or -1. */
+static int list_elements(reader *r, int32_t *rank)
+{
+    self_contact *c = r->c;
+    for (int64_t i = 0; i < r->p->elements; i++)
+        rank[i] = has_distances(r, i) ? 0 : -1;
+    for (int64_t i = 0; i < c->samples; i++) {
+        if (r->of[i] < 0 || !isfinite(r->weight[3 * i] + r->weight[3 * i + 1] + r->weight[3 * i + 2]))
+            return err_set(r->e, NULL, 0,
+                           "contact.element and contact.weight, row %lld: expected an element and three "
+                           "finite weights",
+                           (long long)i);
+        if (rank[r->of[i]] < 0)
+            return err_set(r->e, NULL, 0,
+                           "contact.element, row %lld, is element %d, of which nodes are not in skin.node or all are "
+                           "outside; expected the arrays of one run of sinew bind --self-contact",
+                           (long long)i, r->of[i]);
+    }
+    for (int64_t i = 0; i < r->p->elements; i++)
+        if (rank[i] >= 0)
+            rank[i] = (int32_t)c->elements++;
+    return 0;
+}
+
+static int take_elements(reader *r, const int32_t *rank)
+{
+    self_contact *c = r->c;
+    c->node = mem_array(r->distances, sizeof *c->node, "the skin", r->e);
+    c->element = mem_array(c->elements, 8 * sizeof *c->element, "the skin", r->e);
+    c->distance = mem_array(c->elements, sizeof *c->distance, "the skin", r->e);
+    c->sample_element = mem_array(c->samples, sizeof *c->sample_element, "the skin", r->e);
+    c->share = mem_array(c->samples, 8 * sizeof *c->share, "the skin", r->e);
+    c->rest = mem_array(c->samples, sizeof *c->rest, "the skin", r->e);
+    if (!c->node || !c->element || !c->distance || !c->sample_element || !c->share || !c->rest)
+        return -1;
+    c->nodes = r->distances;
+    memcpy(c->node, r->at, (size_t)c->nodes * sizeof *c->node);
+    for (int64_t i = 0; i < 8 * r->p->elements; i++)
+        if (rank[i / 8] >= 0) {
+            const int64_t to = 8 * (int64_t)rank[i / 8] + i % 8;
+            c->element[to] = r->row[r->p->element_node[i]];
+        }
+    for (int64_t i = 0; i < c->elements; i++) {
+        double value[8];
+        for (int k = 0; k < 8; k++)
+            value[k] = (double)r->value[c->element[8 * i + k]];
+        c->distance[i] = deformed_factors_of(value);
+    }
+    for (int64_t i = 0; i < c->samples; i++) {
+        c->sample_element[i] = rank[r->of[i]];
+        weights_shares(r->weight + 3 * i, c->share + 8 * i);
+    }
+    return 0;
+}
+
+static int read_all(reader *r, const model *m)
+{
+    int32_t *rank = mem_array(r->p->elements, sizeof *rank, "the skin", r->e);
+    const int failed = !rank || find_arrays(r, m) || list_elements(r, rank) || take_elements(r, rank);
+    free(rank);
+    free(r->row);
+    return failed ? -1 : 0;
+}
+
+void self_contact_free(self_contact *c)
+{
+    free(c->node);
+    free(c->sample_element);
+    free(c->share);
+    free(c->element);
+    free(c->distance);
+    free(c->rest);
+    *c = (self_contact){.samples = 0};
+}
+
+/* ---- impulses */
+
+/* The 16 nodes of a contact: their rows and shares, above 0 the sample's, below 0 the place's. */
+typedef struct lever {
+    const int32_t *node[2];
+    const double *share[2];
+} lever;
+
+static lever lever_of(const self_contact_work *w, const touch *t)
+{
+    const self_contact *c = w->c;
+    return (lever){{c->element + 8 * (int64_t)c->sample_element[t->sample], c->element + 8 * (int64_t)t->element},
+                   {c->share + 8 * (int64_t)t->sample, t->share}};
+}
+
+static bool is_free(const self_contact_work *w, int32_t node, int axis)
+{
+    return w->p->hold[3 * (int64_t)w->c->node[node] + axis] == HOLD_FREE;
+}
+
+/* What the sample moves by relative to the place, of values at nodes (x 3). */
+static void relative(const lever *l, const double *value, double to[3])
+{
+    to[0] = to[1] = to[2] = 0;
+    for (int k = 0; k < 8; k++)
+        for (int a = 0; a < 3; a++)
+            to[a] += l->share[0][k] * value[3 * (int64_t)l->node[0][k] + a] -
+                     l->share[1][k] * value[3 * (int64_t)l->node[1][k] + a];
+}
+
+/* Adds what `way` moves both sides by: each node by its share and its side's part. */
+static void push(const self_contact_work *w, const touch *t, const lever *l, const double way[3], double *to)
+{
+    for (int side = 0; side < 2; side++)
+        for (int k = 0; k < 8; k++) {
+            const int32_t n = l->node[side][k];
+            const double share = (side ? -1 : 1) * t->part[side] * l->share[side][k];
+            for (int a = 0; a < 3; a++)
+                to[3 * (int64_t)n + a] += is_free(w, n, a) ? share * way[a] : 0;
+        }
+}
+
+/* The parts of the sides: what moves both so has equal and opposite momentum. */
+static void find_parts(const self_contact_work *w, touch *t)
+{
+    const lever l = lever_of(w, t);
+    double mass[2] = {0, 0};
+    for (int side = 0; side < 2; side++)
+        for (int k = 0; k < 8; k++)
+            mass[side] += l.share[side][k] * w->p->mass[w->c->node[l.node[side][k]]];
+    const double all = mass[0] + mass[1];
+    t->part[0] = mass[0] > 0 && mass[1] > 0 ? mass[1] / all : .5;
+    t->part[1] = 1 - t->part[0];
+}
+
+static void sum_shares(self_contact_work *w)
+{
+    memset(w->sum, 0, (size_t)w->c->nodes * sizeof *w->sum);
+    for (int64_t i = 0; i < w->touches; i++) {
+        find_parts(w, &w->touch[i]);
+        const lever l = lever_of(w, &w->touch[i]);
+        for (int side = 0; side < 2; side++)
+            for (int k = 0; k < 8; k++)
+                w->sum[l.node[side][k]] += w->touch[i].part[side] * fabs(l.share[side][k]);
+    }
+}
+
+static void find_width(const self_contact_work *w, touch *t)
+{
+    const lever l = lever_of(w, t);
+    t->width = 0;
+    for (int side = 0; side < 2; side++)
+        for (int k = 0; k < 8; k++)
+            for (int a = 0; a < 3; a++)
+                t->width += is_free(w, l.node[side][k], a)
+                                ? fabs(l.share[side][k]) * w->sum[l.node[side][k]] * t->normal[a] * t->normal[a]
+                                : 0;
+}
+
+static double dot_of(const double a[3], const double b[3])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static void begin_touch(const self_contact_work *w, touch *t, double dt)
+{
+    const lever l = lever_of(w, t);
+    double speed[3];
+    find_width(w, t);
+    relative(&l, w->v, speed);
+    const double came = fmin(fmax(-dot_of(speed, t->normal) * dt, 0), -t->off);
+    t->off = fmax(t->off, -came - recovered * w->c->shortest);
+    t->fresh = came / -t->off;
+    t->lambda = 0;
+    t->rubbed[0] = t->rubbed[1] = t->rubbed[2] = 0;
+}
+
+/* Jacobi's iteration: into `change`. */
+static void solve(self_contact_work *w)
+{
+    memset(w->change, 0, 3 * (size_t)w->c->nodes * sizeof *w->change);
+    for (int pass = 0; pass < PASSES; pass++) {
+        for (int64_t i = 0; i < w->touches; i++) {
+            touch *t = &w->touch[i];
+            const lever l = lever_of(w, t);
+            double way[3];
+            if (!(t->width > 0))
+                continue;
+            relative(&l, w->change, way);
+            t->lambda = fmax(t->lambda - (t->off + dot_of(way, t->normal)) / t->width, 0);
+        }
+        memset(w->change, 0, 3 * (size_t)w->c->nodes * sizeof *w->change);
+        for (int64_t i = 0; i < w->touches; i++) {
+            const touch *t = &w->touch[i];
+            const lever l = lever_of(w, t);
+            const double way[3] = {t->lambda * t->normal[0], t->lambda * t->normal[1], t->lambda * t->normal[2]};
+            push(w, t, &l, way, w->change);
+        }
+    }
+}
+
+/* Displacements as solved, velocities by what came in this step. */
+static void apply(self_contact_work *w, double dt)
+{
+    for (int64_t i = 0; i < 3 * w->c->nodes; i++)
+        w->u[i] += w->change[i];
+    for (int64_t i = 0; i < w->touches; i++) {
+        const touch *t = &w->touch[i];
+        const lever l = lever_of(w, t);
+        const double size = t->fresh * t->lambda / dt;
+        const double more[3] = {size * t->normal[0], size * t->normal[1], size * t->normal[2]};
+        push(w, t, &l, more, w->v);
+    }
+}
+
+/* What friction has taken at a contact, once more is taken of the slip that is left: at most mu times what presses. */
+static void rub_touch(const self_contact_work *w, touch *t, double dt)
+{
+    const lever l = lever_of(w, t);
+    double slip[3], more[3];
+    if (!(t->width > 0))
+        return;
+    relative(&l, w->v, slip);
+    relative(&l, w->change, more);
+    for (int a = 0; a < 3; a++)
+        slip[a] += more[a];
+    const double along = dot_of(slip, t->normal);
+    for (int a = 0; a < 3; a++)
+        t->rubbed[a] -= (slip[a] - along * t->normal[a]) / t->width;
+    const double size = sqrt(dot_of(t->rubbed, t->rubbed)), most = w->c->friction * t->fresh * t->lambda / dt;
+    for (int a = 0; a < 3; a++)
+        t->rubbed[a] *= size > most ? most / size : 1;
+}
+
+/* Friction takes from the velocity along the skin, and from the way in the step. */
+static void rub(self_contact_work *w, double dt)
+{
+    memset(w->change, 0, 3 * (size_t)w->c->nodes * sizeof *w->change);
+    for (int pass = 0; pass < PASSES; pass++) {
+        for (int64_t i = 0; i < w->touches; i++)
+            rub_touch(w, &w->touch[i], dt);
+        memset(w->change, 0, 3 * (size_t)w->c->nodes * sizeof *w->change);
+        for (int64_t i = 0; i < w->touches; i++) {
+            const lever l = lever_of(w, &w->touch[i]);
+            push(w, &w->touch[i], &l, w->touch[i].rubbed, w->change);
+        }
+    }
+    for (int64_t i = 0; i < 3 * w->c->nodes; i++) {
+        w->v[i] += w->change[i];
+        w->u[i] += dt * w->change[i];
+    }
+}
+
+int64_t self_contact_step(self_contact_work *w, pool *threads, double dt)
+{
+    contact_touches(w, threads);
+    if (!w->touches)
+        return 0;
+    sum_shares(w);
+    for (int64_t i = 0; i < w->touches; i++)
+        begin_touch(w, &w->touch[i], dt);
+    solve(w);
+    apply(w, dt);
+    if (w->c->friction > 0)
+        rub(w, dt);
+    return w->touches;
+}
+
+/* ---- making it */
+
+/* How deep samples are at rest. */
+static int find_rest(self_contact *c, const tled_problem *p, pool *threads, err *e)
+{
+    self_contact_work *w = contact_room_make(p, c, e);
+    if (!w)
+        return -1;
+    contact_touches(w, threads);
+    for (int64_t i = 0; i < w->touches; i++) {
+        const double depth = -w->touch[i].off;
+        c->rest[w->touch[i].sample] = -depth;
+        c->deep += depth > SELF_CONTACT_DEEP * c->shortest;
+        c->deepest = fmax(c->deepest, depth);
+    }
+    self_contact_room_free(w);
+    return 0;
+}
+
+int self_contact_make(self_contact *c, tled_problem *p, const model *m, double friction, pool *threads, err *e)
+{
+    reader r = {.c = c, .p = p, .e = e};
+    *c = (self_contact){.friction = friction};
+    if (!model_find(m, "contact.element"))
+        return 0;
+    if (p->conforming)
+        return err_set(e, NULL, 0, "skin touches itself in a model without a lattice; expected one of voxels");
+    if (read_all(&r, m))
+        return -1;
+    c->shortest = fmin(p->side[0], fmin(p->side[1], p->side[2]));
+    if (find_rest(c, p, threads, e))
+        return -1;
+    p->self_contact = c->samples ? c : NULL;
+    return 0;
+}

@@ -1,0 +1,68 @@
+/* Skin that touches itself. Samples of it (contact.element, contact.weight of the model) are carried by their elements;
+ * a sample that is found in another deformed element has a place there at rest, xi, and how far that place was from the
+ * skin, phi(xi), trilinear between the nodes' distances (skin.node, skin.distance), tells how deep it is and the way
+ * out:
+ *     n = F^-T grad phi / |F^-T grad phi|,   g = phi/|F^-T grad phi|.
+ * What is nearer than at rest, where skin may overlap as the model has it, is put back after the predictor. With N the
+ * shares of the nodes of the sample's element and of the other, and p the parts of the two sides,
+ *     u_i += p lambda N_i n,   v_i += beta p lambda N_i n/dt,   so that (sum_i N_i u_i) . n + g >= g0,
+ * with the opposite sign on the other side; p are such that both have equal and opposite momentum (sum_i N_i m_i is the
+ * mass of a side). Nodes thus share by their masses: a light one at the border of cut elements moves as its neighbours.
+ * beta is the part of the depth that came in this step: what was there before is taken back without speed. Nothing
+ * bounces, and the stable step stays. Coulomb friction takes, of the velocity along the skin, at most mu times what is
+ * taken across it.
+ *
+ * All contacts of a step are solved at once by Jacobi's iteration; each goes so short a way, by the sums of the shares
+ * at its nodes, that no number of samples at one place overshoots (as masses that are split between contacts: Tonge et
+ * al. 2012, ACM Transactions on Graphics 31:105). A sample and an element that have a node in common are one piece and
+ * do not touch.
+ *
+ * A table of where elements are, in cells of space, is made anew when any node has moved by more than its margin; which
+ * contacts there are does not depend on when. All in double, in one order: the same bytes for any number of threads.
+ * The creator owns a self_contact; it borrows the model.
+ */
+#ifndef SINEW_SELF_CONTACT_H
+#define SINEW_SELF_CONTACT_H
+
+#include "base/pool.h"
+#include "tled/contact/deformed_place.h"
+#include "tled/problem/state.h"
+
+#define SELF_CONTACT_DEEP .1 /* of a shortest side: deeper than that at rest is worth a word */
+
+typedef struct self_contact {
+    int64_t samples, elements, nodes; /* elements: that samples may be in; nodes: of these, and of the samples' */
+    int32_t *node;                    /* nodes: of the model, ascending; all is owned */
+    int32_t *sample_element;          /* samples: rows of `element` */
+    double *share;                    /* samples x 8 */
+    int32_t *element;                 /* elements x 8: rows of `node` */
+    deformed_factors *distance;       /* elements, m: phi */
+    double *rest;                     /* samples, m: g0, at most 0 */
+    double shortest;                  /* m: the shortest side of an element */
+    double friction;                  /* mu */
+    int64_t deep;                     /* samples that are deeper than SELF_CONTACT_DEEP of that at rest */
+    double deepest;                   /* m: the most */
+} self_contact;
+
+/* Makes c, of 0 samples where the model has none; it is the problem's from then on. -1 with e filled, and c to be freed
+ * all the same. */
+int self_contact_make(self_contact *c, tled_problem *p, const model *m, double friction, pool *threads, err *e);
+void self_contact_free(self_contact *c);
+
+/* What a step takes. The creator owns it. */
+typedef struct self_contact_work self_contact_work;
+
+/* NULL with e filled. */
+self_contact_work *self_contact_room(const tled_problem *p, err *e);
+void self_contact_room_free(self_contact_work *w);
+int64_t self_contact_bytes(const self_contact_work *w);
+
+/* Displacements and velocities of the nodes (nodes x 3), the caller's to fill, and to take back where nodes were moved.
+ */
+double *self_contact_displacement(self_contact_work *w);
+double *self_contact_velocity(self_contact_work *w);
+
+/* After the predictor of a step of dt. Returns how many contacts press. */
+int64_t self_contact_step(self_contact_work *w, pool *threads, double dt);
+
+#endif
