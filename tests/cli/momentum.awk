@@ -1,4 +1,4 @@
-# Of a model in text with frames: momenta of the last frame along x, y and z in parts of the sum of their absolute values. Masses are an
+# Of a model in text with frames: the momentum along x, y and z in the last frame, and the sum of the nodes' sizes of it. Masses are an
 # eighth of each element's share at each node, no less than -v least of it, as that of tled-run.
 /^array / { name = $2; i = 0; next }
 /^(crc|frame|end|axis|meta)/ { name = ""; next }
@@ -16,5 +16,5 @@ END {
         pz += mass[k] * z[k]
         all += mass[k] * sqrt(x[k] ^ 2 + y[k] ^ 2 + z[k] ^ 2)
     }
-    printf "%.3g %.3g %.3g\n", px / all, py / all, pz / all
+    printf "%.12g %.12g %.12g %.12g\n", px, py, pz, all
 }
