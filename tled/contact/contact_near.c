@@ -115,9 +115,9 @@ static void table_elements(self_contact_work *w)
 
 bool contact_have_neighbour(const self_contact_work *w, int32_t one, int32_t other)
 {
-    const int32_t from = w->ring_start[one], count = w->ring_start[one + 1] - from;
+    const int32_t from = w->c->ring_start[one], count = w->c->ring_start[one + 1] - from;
     for (int k = 0; k < 8; k++)
-        if (bsearch(&w->c->element[8 * (int64_t)other + k], w->ring + from, (size_t)count, sizeof *w->ring,
+        if (bsearch(&w->c->element[8 * (int64_t)other + k], w->c->ring + from, (size_t)count, sizeof *w->c->ring,
                     contact_by_number))
             return true;
     return false;

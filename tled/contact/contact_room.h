@@ -26,14 +26,15 @@ struct self_contact_work {
     double *x;      /* nodes x 3, m: where they are */
     double *listed; /* nodes x 3, m: where they were when candidates were listed */
     double *change; /* nodes x 3, m */
-    double *sum;    /* nodes: of shares */
+    double *sum;    /* nodes: of shares; 0 only of those without a contact */
+    int32_t *about; /* nodes: those with a contact, in the order of these */
+    int32_t abouts;
     bool is_listed;
-    double *sampled;            /* elements x 6, m: the box of the samples of each; of none: low above high */
-    double *middle;             /* elements x 3: the skin's normal at their middles */
-    int32_t *count;             /* elements: those that their samples may be in */
-    int32_t *candidate;         /* elements x CANDIDATES: these, ascending */
-    int32_t *ring_start, *ring; /* elements + 1; nodes of the elements about each, ascending */
-    int32_t *near;              /* samples that have candidates */
+    double *sampled;    /* elements x 6, m: the box of the samples of each; of none: low above high */
+    double *middle;     /* elements x 3: the skin's normal at their middles */
+    int32_t *count;     /* elements: those that their samples may be in */
+    int32_t *candidate; /* elements x CANDIDATES: these, ascending */
+    int32_t *near;      /* samples that have candidates */
     int64_t nears;
     double drift;  /* m: how far the fastest node has come since the start, step by step */
     double *until; /* samples, m: by what drift one may touch */

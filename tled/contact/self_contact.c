@@ -5,11 +5,12 @@
 #include "tled/contact/contact_room.h"
 #include "tled/contact/contact_touch.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { PASSES = 4 };
+enum { PASSES = 4, RING_MOST = 1024 }; /* nodes about an element, with those that come again */
 
 /* Of an element's shortest side: what depth from before is taken back in a step at most. */
 static const double recovered = 1e-3;
@@ -135,8 +136,61 @@ static int read_all(reader *r, const model *m)
     return failed ? -1 : 0;
 }
 
+/* The nodes of the elements around an element's nodes, ascending. Returns how many. */
+static int find_ring(const self_contact *c, const int32_t *start, const int32_t *around, int64_t element, int32_t *to)
+{
+    int count = 0, kept = 0;
+    for (int k = 0; k < 8; k++) {
+        const int32_t node = c->element[8 * element + k];
+        for (int32_t i = start[node]; i < start[node + 1]; i++)
+            for (int j = 0; j < 8 && count < RING_MOST; j++)
+                to[count++] = c->element[8 * (int64_t)around[i] + j];
+    }
+    qsort(to, (size_t)count, sizeof *to, contact_by_number);
+    for (int i = 0; i < count; i++)
+        if (!i || to[i] != to[kept - 1])
+            to[kept++] = to[i];
+    return kept;
+}
+
+/* Elements by their nodes: those of node n are around[start[n]] and on. */
+static void list_around(const self_contact *c, int32_t *start, int32_t *around)
+{
+    for (int64_t i = 0; i < 8 * c->elements; i++)
+        start[c->element[i] + 1]++;
+    for (int64_t n = 0; n < c->nodes; n++)
+        start[n + 1] += start[n];
+    for (int64_t i = 8 * c->elements; i-- > 0;)
+        around[--start[c->element[i] + 1]] = (int32_t)(i / 8);
+    memmove(start, start + 1, (size_t)c->nodes * sizeof *start);
+    start[c->nodes] = (int32_t)(8 * c->elements);
+}
+
+static int make_rings(self_contact *c, err *e)
+{
+    int32_t *start = mem_array(c->nodes + 2, sizeof *start, "the skin", e), ring[RING_MOST];
+    int32_t *around = start ? mem_array(8 * c->elements, sizeof *around, "the skin", e) : NULL;
+    int64_t room = 0, count = 0;
+    int failed = !around || !(c->ring_start = mem_array(c->elements + 1, sizeof *c->ring_start, "the skin", e));
+    if (!failed)
+        list_around(c, start, around);
+    for (int64_t i = 0; i < c->elements && !failed; i++) {
+        const int n = find_ring(c, start, around, i, ring);
+        failed = mem_grow(&c->ring, &room, count + n, sizeof *c->ring, "the skin", e);
+        if (!failed)
+            memcpy(c->ring + count, ring, (size_t)n * sizeof *ring);
+        count += n;
+        c->ring_start[i + 1] = (int32_t)count;
+    }
+    free(start);
+    free(around);
+    return failed ? -1 : 0;
+}
+
 void self_contact_free(self_contact *c)
 {
+    free(c->ring_start);
+    free(c->ring);
     free(c->node);
     free(c->sample_element);
     free(c->share);
@@ -201,15 +255,18 @@ static void find_parts(const self_contact_work *w, touch *t)
     t->part[1] = 1 - t->part[0];
 }
 
+/* The shares of the contacts at each node; and the nodes that have any. */
 static void sum_shares(self_contact_work *w)
 {
-    memset(w->sum, 0, (size_t)w->c->nodes * sizeof *w->sum);
     for (int64_t i = 0; i < w->touches; i++) {
-        find_parts(w, &w->touch[i]);
         const lever l = lever_of(w, &w->touch[i]);
         for (int side = 0; side < 2; side++)
-            for (int k = 0; k < 8; k++)
-                w->sum[l.node[side][k]] += w->touch[i].part[side] * fabs(l.share[side][k]);
+            for (int k = 0; k < 8; k++) {
+                double *sum = &w->sum[l.node[side][k]];
+                if (*sum == 0)
+                    w->about[w->abouts++] = l.node[side][k];
+                *sum += w->touch[i].part[side] * fabs(l.share[side][k]) + DBL_MIN; /* above 0 where it is counted */
+            }
     }
 }
 
@@ -243,10 +300,16 @@ static void begin_touch(const self_contact_work *w, touch *t, double dt)
     t->rubbed[0] = t->rubbed[1] = t->rubbed[2] = 0;
 }
 
+static void forget_changes(self_contact_work *w)
+{
+    for (int32_t k = 0; k < w->abouts; k++)
+        memset(w->change + 3 * (int64_t)w->about[k], 0, 3 * sizeof *w->change);
+}
+
 /* Jacobi's iteration: into `change`. */
 static void solve(self_contact_work *w)
 {
-    memset(w->change, 0, 3 * (size_t)w->c->nodes * sizeof *w->change);
+    forget_changes(w);
     for (int pass = 0; pass < PASSES; pass++) {
         for (int64_t i = 0; i < w->touches; i++) {
             touch *t = &w->touch[i];
@@ -257,7 +320,7 @@ static void solve(self_contact_work *w)
             relative(&l, w->change, way);
             t->lambda = fmax(t->lambda - (t->off + dot_of(way, t->normal)) / t->width, 0);
         }
-        memset(w->change, 0, 3 * (size_t)w->c->nodes * sizeof *w->change);
+        forget_changes(w);
         for (int64_t i = 0; i < w->touches; i++) {
             const touch *t = &w->touch[i];
             const lever l = lever_of(w, t);
@@ -270,8 +333,9 @@ static void solve(self_contact_work *w)
 /* Displacements as solved, velocities by what came in this step. */
 static void apply(self_contact_work *w, double dt)
 {
-    for (int64_t i = 0; i < 3 * w->c->nodes; i++)
-        w->u[i] += w->change[i];
+    for (int32_t k = 0; k < w->abouts; k++)
+        for (int64_t i = 3 * (int64_t)w->about[k], end = i + 3; i < end; i++)
+            w->u[i] += w->change[i];
     for (int64_t i = 0; i < w->touches; i++) {
         const touch *t = &w->touch[i];
         const lever l = lever_of(w, t);
@@ -303,35 +367,44 @@ static void rub_touch(const self_contact_work *w, touch *t, double dt)
 /* Friction takes from the velocity along the skin, and from the way in the step. */
 static void rub(self_contact_work *w, double dt)
 {
-    memset(w->change, 0, 3 * (size_t)w->c->nodes * sizeof *w->change);
+    forget_changes(w);
     for (int pass = 0; pass < PASSES; pass++) {
         for (int64_t i = 0; i < w->touches; i++)
             rub_touch(w, &w->touch[i], dt);
-        memset(w->change, 0, 3 * (size_t)w->c->nodes * sizeof *w->change);
+        forget_changes(w);
         for (int64_t i = 0; i < w->touches; i++) {
             const lever l = lever_of(w, &w->touch[i]);
             push(w, &w->touch[i], &l, w->touch[i].rubbed, w->change);
         }
     }
-    for (int64_t i = 0; i < 3 * w->c->nodes; i++) {
-        w->v[i] += w->change[i];
-        w->u[i] += dt * w->change[i];
-    }
+    for (int32_t k = 0; k < w->abouts; k++)
+        for (int64_t i = 3 * (int64_t)w->about[k], end = i + 3; i < end; i++) {
+            w->v[i] += w->change[i];
+            w->u[i] += dt * w->change[i];
+        }
 }
 
-int64_t self_contact_step(self_contact_work *w, pool *threads, double dt)
+int32_t self_contact_find(self_contact_work *w, pool *threads, const int32_t **rows)
 {
     contact_touches(w, threads);
-    if (!w->touches)
-        return 0;
+    for (int32_t k = 0; k < w->abouts; k++)
+        w->sum[w->about[k]] = 0;
+    w->abouts = 0;
+    for (int64_t i = 0; i < w->touches; i++)
+        find_parts(w, &w->touch[i]);
     sum_shares(w);
+    *rows = w->about;
+    return w->abouts;
+}
+
+void self_contact_solve(self_contact_work *w, double dt)
+{
     for (int64_t i = 0; i < w->touches; i++)
         begin_touch(w, &w->touch[i], dt);
     solve(w);
     apply(w, dt);
     if (w->c->friction > 0)
         rub(w, dt);
-    return w->touches;
 }
 
 /* ---- making it */
@@ -361,7 +434,7 @@ int self_contact_make(self_contact *c, tled_problem *p, const model *m, double f
         return 0;
     if (p->conforming)
         return err_set(e, NULL, 0, "skin touches itself in a model without a lattice; expected one of voxels");
-    if (read_all(&r, m))
+    if (read_all(&r, m) || make_rings(c, e))
         return -1;
     c->shortest = fmin(p->side[0], fmin(p->side[1], p->side[2]));
     if (find_rest(c, p, threads, e))

@@ -38,6 +38,7 @@ typedef struct self_contact {
     int32_t *element;                 /* elements x 8: rows of `node` */
     deformed_factors *distance;       /* elements, m: phi */
     double *rest;                     /* samples, m: g0, at most 0 */
+    int32_t *ring_start, *ring;       /* elements + 1; nodes of the elements about each, ascending */
     double shortest;                  /* m: the shortest side of an element */
     double friction;                  /* mu */
     int64_t deep;                     /* samples that are deeper than SELF_CONTACT_DEEP of that at rest */
@@ -57,12 +58,16 @@ self_contact_work *self_contact_room(const tled_problem *p, err *e);
 void self_contact_room_free(self_contact_work *w);
 int64_t self_contact_bytes(const self_contact_work *w);
 
-/* Displacements and velocities of the nodes (nodes x 3), the caller's to fill, and to take back where nodes were moved.
- */
+/* Displacements of the nodes (nodes x 3), the caller's to fill after the predictor. */
 double *self_contact_displacement(self_contact_work *w);
+
+/* Finds what touches there. Returns how many nodes are about that; row k of them is node rows[k] of c->node. */
+int32_t self_contact_find(self_contact_work *w, pool *threads, const int32_t **rows);
+
+/* Velocities of the nodes (nodes x 3): of those about contacts the caller's to fill. */
 double *self_contact_velocity(self_contact_work *w);
 
-/* After the predictor of a step of dt. Returns how many contacts press. */
-int64_t self_contact_step(self_contact_work *w, pool *threads, double dt);
+/* Puts what touches back, in a step of dt: displacements and velocities of the nodes about contacts change. */
+void self_contact_solve(self_contact_work *w, double dt);
 
 #endif
