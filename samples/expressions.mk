@@ -5,9 +5,12 @@
 #     make expressions FACE=face_all.obj                   the face of ArtiSynth, with 34 muscles
 #     make expressions FACE=face_all.obj EXPRESSIONS_SIDE=1.25
 #
+# The lips, in a box, touch each other; of another face EXPRESSIONS_LIPS=auto takes all that is about its mouth.
+#
 # The skull is cut into skull and jaw as in jaw.mk. Tissue and muscles are those of face.materials.
 
 EXPRESSIONS_SIDE = 2.5
+EXPRESSIONS_LIPS = skin:-28,50,-102,28,90,-65
 EXPRESSIONS_TISSUE = -m muscle.peak=3e5
 EXPRESSIONS_RUN = --precision single --rise-fall 0.01,0.04 -t 2.15 --every 0.05
 EXPRESSIONS_FRAMES = smile:7 frown:16 pucker:25 disgust:34 jaw-open:43
@@ -21,7 +24,8 @@ expressions: $(EXPRESSIONS).png $(EXPRESSIONS).tsv
 $(EXPRESSIONS).model: $(if $(FACE),$(JAW_OUT).obj) face.materials
 	$(if $(FACE),,$(error no face; expected FACE=FILE.obj, a face with groups skin, skull and muscle_*))
 	voxelise --unit mm -s $(EXPRESSIONS_SIDE) --fraction 4 --materials face.materials $< | \
-	    attach --rigid skull,skull_jaw --part jaw=skull_jaw | sinew bind >$@
+	    attach --rigid skull,skull_jaw --part jaw=skull_jaw | \
+	    sinew bind --self-contact $(EXPRESSIONS_LIPS) >$@
 $(EXPRESSIONS).result: $(EXPRESSIONS).model expressions.face.script face.expressions
 	tled-run $(EXPRESSIONS_TISSUE) --script expressions.face.script --expressions face.expressions $(EXPRESSIONS_RUN) <$< >$@
 $(EXPRESSIONS).png: $(EXPRESSIONS).result
