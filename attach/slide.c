@@ -57,19 +57,14 @@ static int find_surface(const slider *s, const char *option, const char *name, b
 }
 
 /* The surfaces that the names between commas stand for. */
-static int find_surfaces(const slider *s, const char *option, const char *text, size_t length, bool *is)
+static int find_surfaces(const slider *s, const char *option, const char *text, bool *is)
 {
     char name[MODEL_NAME];
-    for (const char *p = text; p < text + length;) {
-        const size_t rest = (size_t)(text + length - p), comma = strcspn(p, ","), n = comma < rest ? comma : rest;
-        if (!n || n >= sizeof name || n + 1 == rest)
-            return err_usage(s->e, "%s '%.200s': expected names of rigid surfaces between commas", option, text);
-        snprintf(name, sizeof name, "%.*s", (int)n, p);
+    int found;
+    for (const char *p = text; (found = surface_region_name(&p, name, sizeof name)) > 0;)
         if (find_surface(s, option, name, is))
             return -1;
-        p += n + (n < rest);
-    }
-    return 0;
+    return found ? err_usage(s->e, "%s '%.200s': expected names of rigid surfaces between commas", option, text) : 0;
 }
 
 static int mark_nodes(slider *s, const char *option, const char *text, const bool *is, const uint8_t *inside, int as)
@@ -98,15 +93,14 @@ static int mark_nodes(slider *s, const char *option, const char *text, const boo
 static int take_option(slider *s, const char *option, const char *text, int as)
 {
     const char *colon = strchr(text, ':');
-    const size_t length = colon ? (size_t)(colon - text) : strlen(text);
     const num_unit unit = colon ? scale_unit(NULL, s->m, s->e) : num_unit_of("m");
     if (!unit)
         return -1;
-    if (!length || (colon && !colon[1]))
+    if (!*text || colon == text || (colon && !colon[1]))
         return err_usage(s->e, "%s '%.200s': expected SURFACE,...[:REGION], such as skull:lips.obj", option, text);
     bool *is = mem_array(s->r->surfaces + 1, sizeof *is, "the rigid surfaces", s->e);
     uint8_t *inside = is ? mem_array(s->nodes, 1, "the nodes", s->e) : NULL;
-    const int failed = !inside || find_surfaces(s, option, text, length, is) ||
+    const int failed = !inside || find_surfaces(s, option, text, is) ||
                        surface_region_of_option(option, colon ? colon + 1 : NULL, unit, s->position, s->nodes,
                                                 s->threads, inside, s->e) ||
                        mark_nodes(s, option, text, is, inside, as);

@@ -36,24 +36,13 @@ static bool is_auto(const char *text)
     return !strcmp(text, "auto");
 }
 
-static size_t names_length(const char *text)
-{
-    const char *colon = strchr(text, ':');
-    return colon ? (size_t)(colon - text) : strlen(text);
-}
-
-/* Whether one of the names between commas is the surface's, or one of the group's. */
+/* Tells whether one of the names between commas is the name of the surface, or one of the names of the group. */
 static bool is_named(const char *text, const char *whole, const char *group)
 {
-    const char *end = text + names_length(text);
     char name[MODEL_NAME];
-    for (const char *p = text; p < end;) {
-        const size_t rest = (size_t)(end - p), comma = strcspn(p, ","), n = comma < rest ? comma : rest;
-        snprintf(name, sizeof name, "%.*s", (int)n, p);
+    while (surface_region_name(&text, name, sizeof name) > 0)
         if (!strcasecmp(whole, name) || surface_in_group(group, name))
             return true;
-        p += n + (n < rest);
-    }
     return false;
 }
 
@@ -102,22 +91,19 @@ static bool is_rigid(const maker *k, const char *name)
 
 static int check_option(const maker *k, const char *text)
 {
-    const size_t length = names_length(text);
+    const char *colon = strchr(text, ':');
     char name[MODEL_NAME];
     bool found;
+    int left;
     if (is_auto(text))
         return k->sides->beside ? 0
                                 : err_option(k->e, option,
                                              "auto takes the skin about slits, and the model has none; expected "
                                              "SURFACE,...[:REGION], or a model of voxelise --slits");
-    if (!length || (text[length] && !text[length + 1]))
+    if (!*text || colon == text || (colon && !colon[1]))
         return err_usage(k->e, "%s '%.200s': expected SURFACE,...[:REGION], such as skin:lips.obj, or auto", option,
                          text);
-    for (const char *p = text; p < text + length;) {
-        const size_t rest = (size_t)(text + length - p), comma = strcspn(p, ","), n = comma < rest ? comma : rest;
-        if (!n || n >= sizeof name || n + 1 == rest)
-            return err_usage(k->e, "%s '%.200s': expected names of surfaces between commas", option, text);
-        snprintf(name, sizeof name, "%.*s", (int)n, p);
+    for (const char *p = text; (left = surface_region_name(&p, name, sizeof name)) > 0;) {
         if (check_name(k, name, &found))
             return -1;
         if (!found)
@@ -127,9 +113,8 @@ static int check_option(const maker *k, const char *text)
                            "%s '%.200s': surface %s is rigid; expected surfaces of tissue (attach --slide is for "
                            "tissue on bone)",
                            option, text, name);
-        p += n + (n < rest);
     }
-    return 0;
+    return left ? err_usage(k->e, "%s '%.200s': expected names of surfaces between commas", option, text) : 0;
 }
 
 /* ---- triangles */

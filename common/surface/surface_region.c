@@ -68,6 +68,22 @@ int surface_region_in_file(const char *file, double scale, const double *positio
     return 0;
 }
 
+int surface_region_name(const char **at, char *name, size_t size)
+{
+    const size_t n = strcspn(*at, ",:");
+    if (!n && **at != ',')
+        return 0;
+    if (!n || n >= size)
+        return -1;
+    memcpy(name, *at, n);
+    name[n] = '\0';
+    *at += n;
+    if (**at != ',')
+        return 1;
+    ++*at;
+    return **at && **at != ':' ? 1 : -1;
+}
+
 static int box_of_option(const char *option, const char *text, num_unit unit, double box[6], err *e)
 {
     num_length list[6];

@@ -21,6 +21,10 @@ void surface_region_in_box(const double *position, int64_t vertices, const doubl
 int surface_region_in_file(const char *file, double scale, const double *position, int64_t vertices, double metre,
                            pool *threads, uint8_t *inside, err *e);
 
+/* Gives the next of the names in SURFACE,...[:REGION], from *at, which moves past it and its comma. Returns 1; 0 where
+ * no name is left; and -1 where a name is empty, or does not fit in `size` bytes. */
+int surface_region_name(const char **at, char *name, size_t size);
+
 /* The region that follows a ':' in an option's value: a box of lengths or an OBJ, in that unit; NULL: everywhere.
  * Positions are in m. -1 with e filled, in the option's name, where it is neither. */
 int surface_region_of_option(const char *option, const char *text, num_unit unit, const double *position,
