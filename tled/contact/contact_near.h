@@ -18,10 +18,10 @@ void contact_near_list(self_contact_work *w, pool *threads);
 deformed_map contact_map(const self_contact_work *w, int32_t element);
 void contact_place(const self_contact_work *w, int64_t sample, double x[3]);
 
-/* Whether x is in an element's box, with its margins. */
+/* Tells whether x lies in the box of an element, with its margins. */
 bool contact_in_box(const self_contact_work *w, int32_t element, const double x[3]);
 
-/* Whether some element has a node of each. */
+/* Tells whether some element has a node of each of the two. */
 bool contact_have_neighbour(const self_contact_work *w, int32_t one, int32_t other);
 
 #endif

@@ -23,7 +23,6 @@ void self_contact_room_free(self_contact_work *w)
     free(w->candidate);
     free(w->near);
     free(w->until);
-    free(w->found);
     free(w->touch);
     free(w->start);
     free(w->of);
@@ -61,7 +60,6 @@ self_contact_work *contact_room_make(const tled_problem *p, const self_contact *
         (w->candidate = mem_array(c->elements, CANDIDATES * sizeof *w->candidate, what, e)) &&
         (w->near = mem_array(c->samples, sizeof *w->near, what, e)) &&
         (w->until = mem_array(c->samples, sizeof *w->until, what, e)) &&
-        (w->found = mem_array(c->samples, sizeof *w->found, what, e)) &&
         (w->touch = mem_array(c->samples, sizeof *w->touch, what, e)) &&
         (w->start = mem_array(w->cells + 1, sizeof *w->start, what, e)) &&
         (w->of = mem_array(c->elements, sizeof *w->of, what, e)) &&
@@ -84,7 +82,7 @@ int64_t self_contact_bytes(const self_contact_work *w)
         return 0;
     const self_contact *c = w->c;
     return c->nodes * (16 * (int64_t)sizeof(double) + (int64_t)sizeof(int32_t)) +
-           c->samples * (2 * (int64_t)sizeof(touch) + 8 + (int64_t)sizeof(int32_t)) +
+           c->samples * ((int64_t)sizeof(touch) + 8 + (int64_t)sizeof(int32_t)) +
            c->elements * (15 * (int64_t)sizeof(double) + (CANDIDATES + 3) * (int64_t)sizeof(int32_t)) +
            (w->cells + 1) * (int64_t)sizeof(int32_t);
 }

@@ -38,8 +38,8 @@ struct self_contact_work {
     int64_t nears;
     double drift;  /* m: how far the fastest node has come since the start, step by step */
     double *until; /* samples, m: by what drift one may touch */
-    touch *found;  /* samples; found[i].element < 0: near[i] touches nothing */
-    touch *touch;
+    touch
+        *touch; /* samples: first one for each of near, of element -1 where that touches nothing; then those that do */
     int64_t touches;
     /* The table: elements by the cells that their middles are in. */
     int64_t cells; /* a power of two */

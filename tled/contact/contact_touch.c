@@ -93,7 +93,8 @@ static void turn_normal(double normal[3], double sure, const double own[3], doub
         normal[a] /= square > 0 ? sqrt(square) : 1;
 }
 
-/* Whether a sample is nearer to other skin than at rest; `clear`: how far it else is from that, m. */
+/* Tells whether a sample is nearer to other skin than at rest. If it is not, `clear` gets how far it may still go, m.
+ */
 static bool find_touch(const self_contact_work *w, int64_t sample, touch *t, double *clear)
 {
     const self_contact *c = w->c;
@@ -132,8 +133,8 @@ static void touch_work(void *context, int64_t chunk, int64_t from, int64_t to)
     for (int64_t i = from; i < to; i++) {
         const int32_t sample = w->near[i];
         double clear = 0;
-        if (w->drift < w->until[sample] || !find_touch(w, sample, &w->found[i], &clear))
-            w->found[i].element = -1;
+        if (w->drift < w->until[sample] || !find_touch(w, sample, &w->touch[i], &clear))
+            w->touch[i].element = -1;
         if (clear > 0)
             w->until[sample] = w->drift + spare_way * clear;
     }
@@ -145,6 +146,6 @@ void contact_touches(self_contact_work *w, pool *threads)
     pool_run(threads, w->nears, SAMPLES_CHUNK, touch_work, w);
     w->touches = 0;
     for (int64_t i = 0; i < w->nears; i++)
-        if (w->found[i].element >= 0)
-            w->touch[w->touches++] = w->found[i];
+        if (w->touch[i].element >= 0)
+            w->touch[w->touches++] = w->touch[i];
 }

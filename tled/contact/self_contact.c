@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { PASSES = 4, RING_MOST = 1024 }; /* nodes about an element, with those that come again */
+enum { PASSES = 4, RING_MOST = 512 }; /* nodes about an element, with those that come again */
 
 /* Of an element's shortest side: what depth from before is taken back in a step at most. */
 static const double recovered = 1e-3;
@@ -127,24 +127,16 @@ static int take_elements(reader *r, const int32_t *rank)
     return 0;
 }
 
-static int read_all(reader *r, const model *m)
-{
-    int32_t *rank = mem_array(r->p->elements, sizeof *rank, "the skin", r->e);
-    const int failed = !rank || find_arrays(r, m) || list_elements(r, rank) || take_elements(r, rank);
-    free(rank);
-    free(r->row);
-    return failed ? -1 : 0;
-}
-
 /* The nodes of the elements around an element's nodes, ascending. Returns how many. */
-static int find_ring(const self_contact *c, const int32_t *start, const int32_t *around, int64_t element, int32_t *to)
+static int find_ring(const reader *r, const int32_t *rank, int64_t element, int32_t *to)
 {
+    const self_contact *c = r->c;
     int count = 0, kept = 0;
-    for (int k = 0; k < 8; k++) {
-        const int32_t node = c->element[8 * element + k];
-        for (int32_t i = start[node]; i < start[node + 1]; i++)
-            for (int j = 0; j < 8 && count < RING_MOST; j++)
-                to[count++] = c->element[8 * (int64_t)around[i] + j];
+    for (int k = 0; k < 64; k++) {
+        const int32_t corner = r->p->corner[8 * (int64_t)c->node[c->element[8 * element + k / 8]] + k % 8];
+        const int32_t row = corner < 8 * r->p->elements ? rank[corner / 8] : -1;
+        for (int j = 0; j < 8 && row >= 0; j++)
+            to[count++] = c->element[8 * (int64_t)row + j];
     }
     qsort(to, (size_t)count, sizeof *to, contact_by_number);
     for (int i = 0; i < count; i++)
@@ -153,37 +145,30 @@ static int find_ring(const self_contact *c, const int32_t *start, const int32_t 
     return kept;
 }
 
-/* Elements by their nodes: those of node n are around[start[n]] and on. */
-static void list_around(const self_contact *c, int32_t *start, int32_t *around)
+static int make_rings(reader *r, const int32_t *rank)
 {
-    for (int64_t i = 0; i < 8 * c->elements; i++)
-        start[c->element[i] + 1]++;
-    for (int64_t n = 0; n < c->nodes; n++)
-        start[n + 1] += start[n];
-    for (int64_t i = 8 * c->elements; i-- > 0;)
-        around[--start[c->element[i] + 1]] = (int32_t)(i / 8);
-    memmove(start, start + 1, (size_t)c->nodes * sizeof *start);
-    start[c->nodes] = (int32_t)(8 * c->elements);
-}
-
-static int make_rings(self_contact *c, err *e)
-{
-    int32_t *start = mem_array(c->nodes + 2, sizeof *start, "the skin", e), ring[RING_MOST];
-    int32_t *around = start ? mem_array(8 * c->elements, sizeof *around, "the skin", e) : NULL;
+    self_contact *c = r->c;
+    int32_t ring[RING_MOST];
     int64_t room = 0, count = 0;
-    int failed = !around || !(c->ring_start = mem_array(c->elements + 1, sizeof *c->ring_start, "the skin", e));
-    if (!failed)
-        list_around(c, start, around);
-    for (int64_t i = 0; i < c->elements && !failed; i++) {
-        const int n = find_ring(c, start, around, i, ring);
-        failed = mem_grow(&c->ring, &room, count + n, sizeof *c->ring, "the skin", e);
-        if (!failed)
-            memcpy(c->ring + count, ring, (size_t)n * sizeof *ring);
+    c->ring_start = mem_array(c->elements + 1, sizeof *c->ring_start, "the skin", r->e);
+    for (int64_t i = 0; c->ring_start && i < c->elements; i++) {
+        const int n = find_ring(r, rank, i, ring);
+        if (mem_grow(&c->ring, &room, count + n, sizeof *c->ring, "the skin", r->e))
+            return -1;
+        memcpy(c->ring + count, ring, (size_t)n * sizeof *ring);
         count += n;
         c->ring_start[i + 1] = (int32_t)count;
     }
-    free(start);
-    free(around);
+    return c->ring_start ? 0 : -1;
+}
+
+static int read_all(reader *r, const model *m)
+{
+    int32_t *rank = mem_array(r->p->elements, sizeof *rank, "the skin", r->e);
+    const int failed =
+        !rank || find_arrays(r, m) || list_elements(r, rank) || take_elements(r, rank) || make_rings(r, rank);
+    free(rank);
+    free(r->row);
     return failed ? -1 : 0;
 }
 
@@ -434,7 +419,7 @@ int self_contact_make(self_contact *c, tled_problem *p, const model *m, double f
         return 0;
     if (p->conforming)
         return err_set(e, NULL, 0, "skin touches itself in a model without a lattice; expected one of voxels");
-    if (read_all(&r, m) || make_rings(c, e))
+    if (read_all(&r, m))
         return -1;
     c->shortest = fmin(p->side[0], fmin(p->side[1], p->side[2]));
     if (find_rest(c, p, threads, e))
