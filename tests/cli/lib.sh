@@ -112,6 +112,21 @@ near() {
     fi
 }
 
+# cut_off POINT COMMAND...: runs it until its checkpoint is there, 5 s at most, and kills it.
+cut_off() {
+    tap_point=$1
+    shift
+    { "$@" <&3 >"$T/stdout" 2>/dev/null & } 3<&0 # a command behind & has no stdin but by name
+    tap_cut=$!
+    tap_waits=0
+    while [ ! -s "$tap_point" ] && [ $tap_waits -lt 100 ]; do
+        sleep .05
+        tap_waits=$((tap_waits + 1))
+    done
+    kill -KILL $tap_cut
+    wait $tap_cut 2>/dev/null
+}
+
 # options_of TOOL: the options that its help has, letters and names, one a line, sorted.
 options_of() {
     "$1" --help | grep -E '^  (-[a-zA-Z]|    --)' | sed 's/^ *//; s/  .*//' | tr ' ,' '[\n*]' | grep -E '^(-[a-zA-Z]|--[a-z-]+)$' | sort -u

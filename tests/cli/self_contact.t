@@ -117,16 +117,9 @@ part() {
 part -t 0.1 <"$T/slit" >"$T/whole"
 part -t 0.05 <"$T/slit" | part -t 0.05 >"$T/parts"
 check "in two parts, the same frames" sinew diff "$T/whole" "$T/parts"
-tled-run -q -d cpu -m tissue.E=3000 -t 0.13 --script "$T/close" --checkpoint "$T/point" --checkpoint-every .02 -o "$T/cut" \
-    <"$T/slit" 2>/dev/null &
-cut=$!
-i=0
-while [ ! -s "$T/point" ] && [ $i -lt 100 ]; do
-    sleep .05
-    i=$((i + 1))
-done
-kill -KILL $cut
-wait $cut 2>/dev/null
+cut_off "$T/point" \
+    tled-run -q -d cpu -m tissue.E=3000 -t 0.13 --script "$T/close" --checkpoint "$T/point" --checkpoint-every .02 -o "$T/cut" \
+    <"$T/slit"
 shut --restart "$T/point" --checkpoint "$T/point" -o "$T/cut" <"$T/slit"
 is "$(cmp "$T/shut" "$T/cut" 2>&1)" "" "and a run that was cut off goes on to the same bytes"
 

@@ -190,16 +190,9 @@ lasting() {
     tled-run -q -d cpu --script "$T/push" --friction .1 --damping 20 -t 3 --every .5 "$@" <"$T/moves" 2>/dev/null
 }
 lasting -o "$T/whole"
-tled-run -q -d cpu --script "$T/push" --friction .1 --damping 20 -t 3 --every .5 --checkpoint "$T/point" --checkpoint-every .02 -o "$T/cut" \
-    <"$T/moves" 2>/dev/null &
-cut=$!
-i=0
-while [ ! -s "$T/point" ] && [ $i -lt 100 ]; do
-    sleep .05
-    i=$((i + 1))
-done
-kill -KILL $cut
-wait $cut 2>/dev/null
+cut_off "$T/point" \
+    tled-run -q -d cpu --script "$T/push" --friction .1 --damping 20 -t 3 --every .5 --checkpoint "$T/point" --checkpoint-every .02 -o "$T/cut" \
+    <"$T/moves"
 fails 1 "a checkpoint keeps the friction" "friction" sh -c "tled-run -q -d cpu --script '$T/push' --friction .2 --damping 20 -t 3 --every .5 --restart '$T/point' -o '$T/cut' <'$T/moves'"
 lasting --restart "$T/point" --checkpoint "$T/point" -o "$T/cut"
 is "$(cmp "$T/whole" "$T/cut" 2>&1)" "" "and a run that was cut off goes on to the same bytes"
