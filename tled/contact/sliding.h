@@ -11,26 +11,14 @@
  *
  * phi is trilinear between samples at corners of voxels (slide.node, field.first, distance.value of the model); beyond
  * the field it goes on as in the nearest cell. Nodes that the script displaces do not slide in what it displaces.
- * All is computed in double, node by node: the same bytes for any number of threads. The creator owns a sliding; it
- * borrows the model.
+ * All is computed in double, node by node (sliding_node.h): the same bytes for any number of threads. The creator owns
+ * a sliding; it borrows the model.
  */
 #ifndef SINEW_SLIDING_H
 #define SINEW_SLIDING_H
 
+#include "tled/contact/sliding_node.h"
 #include "tled/problem/state.h"
-
-/* Where a field's bone is: x = turn X + to. */
-typedef struct sliding_bone {
-    double turn[3][3], to[3];
-} sliding_bone;
-
-typedef struct sliding_field {
-    int64_t start;      /* of its samples */
-    int32_t samples[3]; /* along x, y, z */
-    double first[3];    /* m: where its first sample is */
-    int32_t hold;       /* the script's first curve of its body, or -1: it stays */
-    sliding_bone still; /* where it then is: at rest, or where a frame has it */
-} sliding_field;
 
 typedef struct sliding {
     int64_t count; /* nodes */
@@ -42,9 +30,7 @@ typedef struct sliding {
     int64_t fields;
     const int32_t *body; /* fields: the body that each moves with, or -1; NULL: none moves */
     char *const *name;   /* bodies */
-    const float *value;  /* m: phi */
-    double spacing[3];
-    double friction; /* mu */
+    sliding_ground ground;
 } sliding;
 
 /* Makes s, and s->fields = 0 where the model has no nodes that slide; it is the problem's from then on. -1 with e
@@ -58,27 +44,11 @@ void sliding_start(sliding *s, const frame *f);
 /* Takes over which curves of the script move the bones. */
 void sliding_follow(sliding *s, const script *of);
 
-/* value: the curves'. */
+/* Node row i, as the script has it now; and a field's bone, at the curves' values. */
+sliding_node sliding_node_of(const tled_problem *p, int64_t i);
 sliding_bone sliding_bone_at(const sliding *s, int32_t which, const double *value);
 
-/* How far node row i is off at x (m), and n: a unit vector. The bone's point there, at rest, is where. */
-typedef struct sliding_touch {
-    double off, normal[3], where[3];
-} sliding_touch;
-
-sliding_touch sliding_at(const sliding *s, int64_t i, const sliding_bone *bone, const double x[3]);
-
-/* Takes out of a force on node row i (3, N), or an acceleration, what the bone bears of it at displacement u; in
- * components that are not held. Returns what that was along n: above 0 it is pushed into the bone. */
-double sliding_bear(const tled_problem *p, int64_t i, const sliding_bone *bone, const double u[3], double force[3]);
-
-/* What the bone does to a node, N, where other forces sum up to `net`: along n, and by friction as long as it does not
- * slip. In free components; value: the curves'; displacement: of all nodes. */
-typedef struct sliding_load {
-    double normal[3], stuck[3];
-    double pressed; /* of what is along n, what presses the node; at least 0 */
-} sliding_load;
-
+/* Of node row i; value: the curves'; displacement: of all nodes. */
 sliding_load sliding_load_at(const tled_problem *p, int64_t i, const double *value, const double *displacement,
                              const double net[3]);
 
@@ -90,16 +60,6 @@ typedef struct sliding_moment {
 
 /* The bone's work on it, J: of a node that slips, friction is mu times the mean of what presses it. */
 double sliding_work(const tled_problem *p, int64_t i, const sliding_moment *was, const sliding_moment *is);
-
-/* Friction in the second half of a step of dt, on v of node row i at displacement u; past: where the bone was before
- * the step. */
-void sliding_rub(const tled_problem *p, int64_t i, const sliding_bone *past, const sliding_bone *is, double borne,
-                 double dt, const double u[3], double v[3]);
-
-/* After the predictor, in the first half: u and v of node row i, in a step of dt; borne: the acceleration that the bone
- * bears (of sliding_bear). was: where the bone was before the step. */
-void sliding_place(const tled_problem *p, int64_t i, const sliding_bone *was, const sliding_bone *is, double borne,
-                   double dt, double u[3], double v[3]);
 
 /* Of the nodes at these displacements (nodes x 3, m), the most that one is off (m, either way, or into the bone where
  * it may lift), and how many are beyond their field. */

@@ -3,72 +3,34 @@
  */
 enum { SLIDING_CHUNK = 512 };
 
-typedef struct cpu_slider {
-    int64_t row, at; /* in the sliding; in the rows' order */
-    int64_t node;
-    sliding_bone past, was, is; /* a step before now, now, and at the step's end */
-} cpu_slider;
-
-/* What the script displaces of it goes where that says. */
-static void displace_slider(const cpu_state *s, const cpu_slider *c, double dt, double u[3], double v[3])
-{
-    for (int a = 0; a < 3; a++) {
-        const int32_t hold = s->p->hold[3 * c->node + a];
-        if (hold < 0)
-            continue;
-        const double end = moves_to(s->next, hold, a, s->p->position + 3 * c->node);
-        v[a] = (end - u[a]) / dt;
-        u[a] = end;
-    }
-}
-
-static void move_slider(cpu_state *s, const cpu_slider *c, double u[3], double v[3], const double sum[3])
-{
-    const cpu_work *w = &s->work;
-    const tled_problem *p = s->p;
-    const double drag = w->damping * w->dt / 2;
-    double a[3];
-    tled_external(p, s->now, u, c->node, a);
-    for (int i = 0; i < 3; i++)
-        a[i] = p->hold[3 * c->node + i] == HOLD_FREE ? (a[i] - sum[i]) / p->mass[c->node] : 0;
-    const double borne = sliding_bear(p, c->row, &c->was, u, a);
-    for (int i = 0; i < 3; i++)
-        if (p->hold[3 * c->node + i] == HOLD_FREE && w->what & PASS_FINISH)
-            v[i] = v[i] * (1 - drag) + w->dt / 2 * a[i];
-    if (w->what & PASS_FINISH)
-        sliding_rub(p, c->row, &c->past, &c->was, borne, w->dt, u, v);
-    if (!(w->what & PASS_BEGIN))
-        return;
-    for (int i = 0; i < 3; i++)
-        if (p->hold[3 * c->node + i] == HOLD_FREE) {
-            v[i] = (v[i] + w->dt / 2 * a[i]) / (1 + drag);
-            u[i] += w->dt * v[i];
-        }
-    displace_slider(s, c, w->dt, u, v);
-    sliding_place(p, c->row, &c->was, &c->is, borne, w->dt, u, v);
-}
-
 static void slide_work(void *context, int64_t chunk, int64_t from, int64_t to)
 {
     cpu_state *s = context;
-    const sliding *of = s->p->sliding;
+    const cpu_work *w = &s->work;
+    const tled_problem *p = s->p;
+    const sliding *of = p->sliding;
+    const sliding_step step = {w->dt, w->damping, w->what & PASS_FINISH, w->what & PASS_BEGIN, s->next};
     (void)chunk;
     for (int64_t i = from; i < to; i++) {
-        cpu_slider c = {.row = i, .node = of->node[i], .at = s->rows.place[of->node[i]]};
-        double u[3], v[3], sum[3];
-        c.was = sliding_bone_at(of, of->of[i], s->now);
-        c.past = s->work.what & PASS_FINISH ? sliding_bone_at(of, of->of[i], s->past) : c.was;
-        c.is = s->work.what & PASS_BEGIN ? sliding_bone_at(of, of->of[i], s->next) : c.was;
-        for (int a = 0; a < 3; a++) {
-            u[a] = (double)s->field[TLED_DISPLACEMENT][a * s->rows.nodes + c.at];
-            v[a] = (double)s->field[TLED_VELOCITY][a * s->rows.nodes + c.at];
-            sum[a] = (double)s->sum[a * s->rows.nodes + c.at];
+        const int64_t node = of->node[i], place = s->rows.place[node];
+        const sliding_node n = sliding_node_of(p, i);
+        sliding_bones bones = {.was = sliding_bone_at(of, n.of, s->now)};
+        double u[3], v[3], sum[3], a[3];
+        bones.past = step.finishes ? sliding_bone_at(of, n.of, s->past) : bones.was;
+        bones.is = step.begins ? sliding_bone_at(of, n.of, s->next) : bones.was;
+        for (int k = 0; k < 3; k++) {
+            u[k] = (double)s->field[TLED_DISPLACEMENT][k * s->rows.nodes + place];
+            v[k] = (double)s->field[TLED_VELOCITY][k * s->rows.nodes + place];
+            sum[k] = (double)s->sum[k * s->rows.nodes + place];
         }
-        move_slider(s, &c, u, v, sum);
-        for (int a = 0; a < 3; a++) {
-            const int64_t at = a * s->rows.nodes + c.at;
-            s->field[TLED_VELOCITY][at] = (number)v[a];
-            s->spare[at] = (number)(s->work.what & PASS_INTERNAL ? sum[a] : u[a]);
+        tled_external(p, s->now, u, node, a);
+        for (int k = 0; k < 3; k++)
+            a[k] = (a[k] - sum[k]) / p->mass[node];
+        sliding_go(&of->ground, &n, &bones, &step, a, u, v);
+        for (int k = 0; k < 3; k++) {
+            const int64_t at = k * s->rows.nodes + place;
+            s->field[TLED_VELOCITY][at] = (number)v[k];
+            s->spare[at] = (number)(w->what & PASS_INTERNAL ? sum[k] : u[k]);
             s->sum[at] = 0;
         }
     }

@@ -73,7 +73,7 @@ static int add_numbers(fingerprint *f, const fingerprint_run *run, err *e)
                    add_number(f, "--every", r->every, e) || add_number(f, "--dt", r->rate, e) ||
                    add_number(f, "--damping", r->damping, e) || add_number(f, "--rest", r->rest, e) ||
                    add_number(f, "--time", (double)r->steps, e) || add_control(f, run->p->control, e) ||
-                   (run->p->sliding && add_number(f, "--friction", run->p->sliding->friction, e)) ||
+                   (run->p->sliding && add_number(f, "--friction", run->p->sliding->ground.friction, e)) ||
                    (!run->p->sliding && run->p->self_contact &&
                     add_number(f, "--friction", run->p->self_contact->friction, e)) ||
                    (run->p->collider && add_number(f, "--repulsion", run->p->collider->stiffness, e))

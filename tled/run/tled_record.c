@@ -63,7 +63,7 @@ static void add_run(list *l, const session *s, double rate)
     add(l, "hourglass", "%s", control);
     add(l, "unit", "%s", s->script.unit ? s->script.unit : "source.unit");
     if (s->problem.sliding)
-        add_number(l, "friction", s->problem.sliding->friction);
+        add_number(l, "friction", s->problem.sliding->ground.friction);
     else if (s->problem.self_contact)
         add_number(l, "friction", s->problem.self_contact->friction);
     if (s->collider.poses) {
