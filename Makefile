@@ -97,7 +97,7 @@ CUDA_LIBS := -L$(CUDA_HOME)/lib64 -lcudart_static -ldl -lrt -lpthread
 endif
 
 # What only cards use, in C, is in it too.
-CUDA_ONLY := $(wildcard tled/cuda/*.c msds/cuda/*.c)
+CUDA_ONLY := $(wildcard tled/tiles/*.c tled/cuda/*.c msds/cuda/*.c)
 $(BUILD)/libsinew-cuda.a: $(CUDA_SRC:%.cu=$(BUILD)/%.o) $(CUDA_ONLY:%.c=$(BUILD)/%.o)
 	@rm -f $@
 	@ar rcs $@ $^

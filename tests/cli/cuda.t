@@ -61,6 +61,18 @@ same "cut elements" "$T/cut.sinew" -c all=0.5 -g 0,0,-9.81
 run "$T/cut.sinew" -q -d cpu -n 500 -c all=0.1 -g 0,0,-9.81 >"$T/cpu"
 run "$T/cut.sinew" -q -d cuda -n 500 -c all=0.1 -g 0,0,-9.81 >"$T/cuda"
 check "and the CPU's bytes" sinew diff --only node.displacement,node.velocity "$T/cpu" "$T/cuda"
+# ---- Nodes that slide on a ball: bytes, logs, runs to rest and in two parts.
+awk -v nx=12 -v ny=12 -v nz=4 -v h=0.0025 -f tests/cli/block.awk | awk -v nx=12 -v ny=12 -v h=0.0025 -v R=.08 -v lifts=1 -f tests/cli/slide.awk >"$T/slides.sinew"
+same "nodes that slide" "$T/slides.sinew" -g .4,.2,-9.81
+printf '0 gravity .4,.2,-9.81\n0 displace -1,-1,-1,.0001,1,1 0,0,0\n' >"$T/side"
+for device in cpu cuda; do
+    run "$T/slides.sinew" -q -d $device -n 2000 -g .4,.2,-9.81 --friction .3 --log-every .01 --log "$T/slid.$device.log" >"$T/slid.$device"
+    run "$T/slides.sinew" -q -d $device -n 1000 -g .4,.2,-9.81 --friction .3 | tled-run -q -d $device -n 1000 -g .4,.2,-9.81 --friction .3 >"$T/parts.$device"
+    run "$T/slides.sinew" -q -d $device --script "$T/side" >"$T/rests.$device"
+done
+check "and the CPU's bytes" sinew diff --only node.displacement,node.velocity "$T/slid.cpu" "$T/slid.cuda"
+check "in two parts as well" sinew diff --only node.displacement,node.velocity "$T/parts.cpu" "$T/parts.cuda"
+check "and at rest" sinew diff --only node.displacement --abs 1e-8 "$T/rests.cpu" "$T/rests.cuda"
 logged() { # NAME ARG...: the CPU's log in columns 1 to 13, and how many elements of muscles fall
     name=$1
     shift

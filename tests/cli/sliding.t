@@ -179,7 +179,7 @@ near "$3" .005 .01 "but lifts it"
 printf '0 gravity 0,0,0\n.1 gravity 2,2,-9.81\n0 displace -1mm,-1mm,-1mm,1mm,50mm,1mm 0,-,-\n' >"$T/part"
 tled-run -q -d cpu --script "$T/part" --damping 50 -t .2 <"$T/keeps" >"$T/out"
 set -- $(get node.displacement.at.0,0,0 "$T/out")
-check "in the direction that is free, and on the plane" test "$1 $3 $(awk -v y="$2" 'BEGIN { print (y > .003) }')" = "0 0 1"
+check "in the direction that is free, and on the plane" awk -v x="$1" -v y="$2" -v z="$3" 'BEGIN { exit !(x == 0 && y > .003 && z * z < 1e-30) }'
 awk -v E=30000 -v nx=8 -v ny=8 -v nz=3 -v h=.0025 -f tests/cli/block.awk | awk -v nx=8 -v ny=8 -v h=.0025 -v R=.05 -f tests/cli/slide.awk >"$T/sphere"
 printf '0 displace 12mm,9mm,-1mm,13mm,11mm,1mm -,-,0\n.01 displace 12mm,9mm,-1mm,13mm,11mm,1mm -,-,.1mm\n' >"$T/up"
 tled-run -q -d cpu --script "$T/up" --damping 50 -t .02 <"$T/sphere" >"$T/out"

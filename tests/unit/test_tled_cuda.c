@@ -3,7 +3,7 @@
  * and double here over 10,000 steps and at rest, the same looks, the same messages. Without a card all is skipped.
  */
 // needs: tled/cuda/march.c tled/cuda/march_units.c tled/cuda/march_near.c tled/cuda/march_tips.c
-// needs: tled/cuda/march_cells.c tled/cuda/lattice_sheet.c tled/cuda/places.c  tled/*/*.c
+// needs: tled/cuda/march_cells.c tled/tiles/lattice_sheet.c tled/tiles/places.c  tled/*/*.c
 #include "tled_card_runs.h"
 
 #ifdef SINEW_CUDA
@@ -291,6 +291,24 @@ static void test_slits_bytes(const tled_executor *cpu, const tled_executor *cuda
     in_slit = NULL;
 }
 
+/* Nodes that slide: the CPU's bytes in bricks, and nearly where it marches; and looks. */
+static void test_sliding(const tled_executor *twice, const tled_executor *once)
+{
+    in_sliding = true;
+    test_bytes(&lump, 0, true, 1000, &tled_cpu_double, twice, "double, sliding, a script");
+    test_bytes(&muscle, .5, false, 1000, &tled_cpu_double, twice, "double, sliding, a muscle");
+    test_bytes(&lump, 0, true, 1000, &tled_cpu_double, twice, "double, sliding again");
+    test_marched(&marched, 0, true, 60, once, "sliding, a script");
+    test_marched(&large, .2, false, 60, once, "sliding, a muscle");
+    in_cuts = true;
+    test_marched(&large, .2, false, 60, once, "sliding, cut elements");
+    in_cuts = false;
+    in_bent = true;
+    test_look(&lump, true, 300, twice, "double, sliding", 1e-10);
+    test_look(&large, false, 60, once, "single, sliding", 1e-6);
+    in_bent = in_sliding = false;
+}
+
 /* Isotropic control: the CPU's bytes, and a look. */
 static void test_isotropic(const tled_executor *twice, const tled_executor *once)
 {
@@ -483,6 +501,7 @@ int main(void)
     test_cuts_looks(twice, once);
     test_all_marched(once);
     test_isotropic(twice, once);
+    test_sliding(twice, once);
     test_long(twice, "double");
     test_long(once, "single");
     test_rest(twice, "double", 1e-5);

@@ -3,13 +3,13 @@
  * in another order, and where there are slits, of which bricks that none comes to are told nothing. And in rows: the
  * same.
  */
-// needs: tled/cuda/tiles.c tled/cuda/tile_split.c
-// needs: tled/cuda/lattice_sheet.c tled/cuda/places.c  tled/*/*.c
+// needs: tled/tiles/tiles.c tled/tiles/tile_split.c
+// needs: tled/tiles/lattice_sheet.c tled/tiles/places.c  tled/*/*.c
 #include "mesh/lattice.h"
 #include "physics/element_cut.h"
 #include "tled/cpu/cpu.h"
 #include "tled/cpu/rows.h"
-#include "tled/cuda/tiles.h"
+#include "tled/tiles/tiles.h"
 
 #include "tap.h"
 #include "tled_block.h"

@@ -12,6 +12,7 @@
 #include "tled/cuda/march_near.h"
 #include "tled_history.h"
 #include "tled_trial_cuts.h"
+#include "tled_trial_sliding.h"
 
 /* Steps, of a lump on so many processors, in a test of what is left out. */
 enum { OMITTED_STEPS = 8, OMITTED_ON = 6, OMITTED_NODES = 18 * 10 * 7 };
@@ -548,6 +549,7 @@ int main(void)
     test_fibres_of_forms(more);
     test_fibres_looks(2 * more);
     test_cuts(more);
+    test_sliding(2 * more);
     test_live(&marching, false, "a march");
     if (all_of_it) {
         test_live(&marching, true, "a march, made again");

@@ -6,7 +6,7 @@
  * each block that there is room for at once where their layers are all alike, in the order of these.
  */
 // needs: tled/cuda/march.c tled/cuda/march_units.c tled/cuda/march_near.c tled/cuda/march_tips.c
-// needs: tled/cuda/march_cells.c tled/cuda/lattice_sheet.c tled/cuda/places.c  tled/*/*.c
+// needs: tled/cuda/march_cells.c tled/tiles/lattice_sheet.c tled/tiles/places.c  tled/*/*.c
 #include "mesh/lattice.h"
 #include "tled/cuda/march_near.h"
 #include "tled/cuda/march_units.h"

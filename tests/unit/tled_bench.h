@@ -4,6 +4,7 @@
 #ifndef SINEW_TLED_BENCH_H
 #define SINEW_TLED_BENCH_H
 
+#include "tled/contact/sliding.h"
 #include "tled/cpu/cpu.h"
 #include "tled/problem/step.h"
 #include "tled/problem/support.h"
@@ -32,6 +33,7 @@ typedef struct bench {
     tled_problem problem;
     run_setup setup;
     run_end end;
+    sliding sliding; /* of no nodes, unless a test makes it */
     err e;
     double *displacement, *velocity, time; /* the last frame's */
     int64_t frames, cuts;                  /* written; the most parts that a step was cut in */
@@ -128,6 +130,7 @@ static inline int bench_go(bench *b)
 static inline void bench_free(bench *b)
 {
     pool_destroy(b->setup.threads);
+    sliding_free(&b->sliding);
     tled_problem_free(&b->problem);
     script_free(&b->script);
     model_free(&b->m);

@@ -90,6 +90,57 @@ static inline void put_in_form(tled_problem *p)
         ok(false, "form %d: form_tried.h has coefficients", (int)in_form);
 }
 
+/* Whether the lowest nodes slide on a ball below them, which moves with the body, if there is one; every third may come
+ * off. */
+static bool in_sliding;
+
+enum { SLIDING_AROUND = 4 }; /* samples of the field beyond the block */
+
+static inline void add_field(bench *b, const block *what)
+{
+    const int32_t nx = what->cells[0] + 2 * SLIDING_AROUND + 1, ny = what->cells[1] + 2 * SLIDING_AROUND + 1;
+    const int32_t nz = 2 * SLIDING_AROUND + 1, size[3] = {nx, ny, nz};
+    const double *h = what->side, radius = .1;
+    bench_must(model_axis_add(&b->m, "field", 1, &b->e) ||
+                   model_axis_add(&b->m, "distance", (int64_t)nx * ny * nz, &b->e),
+               &b->e);
+    int32_t *first = block_array(&b->m, "field.first")->i32, *samples = block_array(&b->m, "field.samples")->i32;
+    for (int a = 0; a < 3; a++) {
+        first[a] = -SLIDING_AROUND;
+        samples[a] = size[a];
+    }
+    if (model_find(&b->m, "body.name"))
+        block_array(&b->m, "field.body")->i32[0] = 0;
+    float *to = block_array(&b->m, "distance.value")->f32;
+    for (int32_t k = 0; k < nz; k++)
+        for (int32_t j = 0; j < ny; j++)
+            for (int32_t i = 0; i < nx; i++) {
+                const double x = h[0] * (i - SLIDING_AROUND - what->cells[0] / 2.);
+                const double y = h[1] * (j - SLIDING_AROUND - what->cells[1] / 2.);
+                const double z = h[2] * (k - SLIDING_AROUND) + radius;
+                *to++ = (float)(sqrt(x * x + y * y + z * z) - radius);
+            }
+}
+
+static inline void add_sliding(bench *b, const block *what)
+{
+    const model_array *rigid = model_find(&b->m, "node.rigid"), *at = model_find(&b->m, "node.position");
+    int64_t count = 0;
+    for (int64_t n = 0; n < at->rows; n++)
+        count += !rigid->u8[n] && at->f64[3 * n + 2] < what->side[2] / 2;
+    bench_must(model_axis_add(&b->m, "slide", count, &b->e), &b->e);
+    int32_t *node = block_array(&b->m, "slide.node")->i32;
+    uint8_t *lifts = block_array(&b->m, "slide.lifts")->u8;
+    memset(block_array(&b->m, "slide.field")->i32, 0, (size_t)count * sizeof *node);
+    for (int64_t n = 0; n < at->rows; n++)
+        if (!rigid->u8[n] && at->f64[3 * n + 2] < what->side[2] / 2) {
+            *lifts++ = n % 3 == 0;
+            *node++ = (int32_t)n;
+        }
+    add_field(b, what);
+    bench_must(sliding_make(&b->sliding, &b->problem, &b->m, .1, &b->e), &b->e);
+}
+
 /* So many steps of a fraction of the stable one, which is never cut, so that both take the same. */
 static inline void make(bench *b, const block *what, double level, bool scripted, const tled_executor *device,
                         int64_t steps)
@@ -99,6 +150,8 @@ static inline void make(bench *b, const block *what, double level, bool scripted
         add_script(b);
     if (in_form != FORM_NEO_HOOKEAN) /* which they are in */
         put_in_form(&b->problem);
+    if (in_sliding)
+        add_sliding(b, what);
     bench_steps(b, steps, b->setup.damping);
     b->setup.device = device;
     b->setup.rate = 3 / step_at_rest(&b->problem, NULL);

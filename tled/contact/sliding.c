@@ -100,6 +100,8 @@ int sliding_make(sliding *s, tled_problem *p, const model *m, double friction, e
     if (lattice_of(m, &l, e) || read_fields(s, m, &l, e) || read_nodes(s, m, p->nodes, e) || check_held(s, m, e))
         return -1;
     memcpy(s->ground.spacing, l.spacing, sizeof l.spacing);
+    for (int a = 0; a < 3; a++)
+        s->ground.per[a] = 1 / l.spacing[a];
     for (int64_t i = 0; i < s->count; i++) {
         s->rest[i] = sliding_distance(&s->ground, s->of[i], p->position + 3 * (int64_t)s->node[i], slope);
         if (!isfinite(s->rest[i]))
@@ -142,6 +144,14 @@ void sliding_follow(sliding *s, const script *of)
         for (int64_t f = 0; s->body && of->curve[c].verb == SCRIPT_MOVE && f < s->fields; f++)
             if (s->body[f] >= 0 && !strcmp(s->name[s->body[f]], of->curve[c].target))
                 s->field[f].hold = (int32_t)c;
+}
+
+int64_t sliding_samples(const sliding *s)
+{
+    int64_t count = 0;
+    for (int64_t i = 0; i < s->fields; i++)
+        count += (int64_t)s->field[i].samples[0] * s->field[i].samples[1] * s->field[i].samples[2];
+    return count;
 }
 
 /* ---- a node */

@@ -44,6 +44,9 @@ void sliding_start(sliding *s, const frame *f);
 /* Takes over which curves of the script move the bones. */
 void sliding_follow(sliding *s, const script *of);
 
+/* Samples of all fields. */
+int64_t sliding_samples(const sliding *s);
+
 /* Node row i, as the script has it now; and a field's bone, at the curves' values. */
 sliding_node sliding_node_of(const tled_problem *p, int64_t i);
 sliding_bone sliding_bone_at(const sliding *s, int32_t which, const double *value);

@@ -32,6 +32,7 @@ typedef struct sliding_ground {
     const sliding_field *field;
     const float *value; /* m: phi, at the samples of all fields */
     double spacing[3];  /* m: of samples */
+    double per[3];      /* 1/m: 1 over that: few divisions, for which a card takes long */
     double friction;    /* mu */
 } sliding_ground;
 
@@ -66,8 +67,8 @@ SLIDING_FUNCTION double sliding_distance(const sliding_ground *g, int32_t which,
     double t[3], over[3], x[4], along[4]; /* along x, at the four edges */
     int64_t at = f->start;
     for (int a = 0; a < 3; a++) {
-        const double local = (where[a] - f->first[a]) / g->spacing[a], most = f->samples[a] - 1;
-        const double inside = fmin(fmax(local, 0), most), cell = fmin(floor(inside), most - 1);
+        const double local = (where[a] - f->first[a]) * g->per[a], most = f->samples[a] - 1;
+        const double inside = fmin(fmax(local, 0.), most), cell = fmin(floor(inside), most - 1);
         t[a] = inside - cell;
         over[a] = g->spacing[a] * (local - inside);
         at += (int64_t)cell * (a == 0 ? 1 : a == 1 ? row : sheet);
@@ -79,10 +80,10 @@ SLIDING_FUNCTION double sliding_distance(const sliding_ground *g, int32_t which,
     }
     const double low = x[0] + t[1] * (x[1] - x[0]), high = x[2] + t[1] * (x[3] - x[2]);
     slope[0] =
-        ((1 - t[2]) * ((1 - t[1]) * along[0] + t[1] * along[1]) + t[2] * ((1 - t[1]) * along[2] + t[1] * along[3])) /
-        g->spacing[0];
-    slope[1] = ((1 - t[2]) * (x[1] - x[0]) + t[2] * (x[3] - x[2])) / g->spacing[1];
-    slope[2] = (high - low) / g->spacing[2];
+        ((1 - t[2]) * ((1 - t[1]) * along[0] + t[1] * along[1]) + t[2] * ((1 - t[1]) * along[2] + t[1] * along[3])) *
+        g->per[0];
+    slope[1] = ((1 - t[2]) * (x[1] - x[0]) + t[2] * (x[3] - x[2])) * g->per[1];
+    slope[2] = (high - low) * g->per[2];
     return low + t[2] * (high - low) + (over[0] * slope[0] + over[1] * slope[1] + over[2] * slope[2]);
 }
 
@@ -145,12 +146,10 @@ SLIDING_FUNCTION sliding_touch sliding_at(const sliding_ground *g, const sliding
     for (int a = 0; a < 3; a++)
         length += slope[a] * slope[a];
     length = sqrt(length);
-    t.off = (phi - n->rest) / fmax(length, SLIDING_SLOPE);
-    for (int a = 0; a < 3; a++) {
-        t.normal[a] = 0;
-        for (int k = 0; k < 3 && length > 0; k++)
-            t.normal[a] += bone->turn[a][k] * slope[k] / length;
-    }
+    const double per = length > 0 ? 1 / length : 0;
+    t.off = (phi - n->rest) * (length < SLIDING_SLOPE ? 1 / SLIDING_SLOPE : per);
+    for (int a = 0; a < 3; a++)
+        t.normal[a] = (bone->turn[a][0] * slope[0] + bone->turn[a][1] * slope[1] + bone->turn[a][2] * slope[2]) * per;
     return t;
 }
 
@@ -166,17 +165,16 @@ SLIDING_FUNCTION double sliding_free_normal(const sliding_node *n, const double 
     return square >= .25 ? square : 0;
 }
 
-/* Takes out of a force (3, N), or an acceleration, what the bone bears of it at displacement u; in components that are
- * not held. Returns what that was along n: above 0 it is pushed into the bone. */
-SLIDING_FUNCTION double sliding_bear(const sliding_ground *g, const sliding_node *n, const sliding_bone *bone,
-                                     const double *u, double *force)
+/* Takes out of a force (3, N), or an acceleration, what the bone bears of it; in components that are not held. Returns
+ * what that was along n: above 0 it is pushed into the bone. t: where the node is. */
+SLIDING_FUNCTION double sliding_bear(const sliding_ground *g, const sliding_node *n, const sliding_touch *t,
+                                     double *force)
 {
     double free_part[3], along = 0;
-    const sliding_touch t = sliding_at(g, n, bone, u);
-    const double square = sliding_free_normal(n, t.normal, free_part);
+    const double square = sliding_free_normal(n, t->normal, free_part);
     for (int a = 0; a < 3; a++)
         along += force[a] * free_part[a];
-    if (!(square > 0) || (n->lifts && (along > 0 || t.off > sliding_touching(g))))
+    if (!(square > 0) || (n->lifts && (along > 0 || t->off > sliding_touching(g))))
         return 0;
     for (int a = 0; a < 3; a++)
         force[a] -= along / square * free_part[a];
@@ -217,16 +215,6 @@ SLIDING_FUNCTION void sliding_rub(const sliding_node *n, const sliding_touch *t,
         v[a] -= part * slip[a];
 }
 
-/* Friction in the second half of a step, on v at displacement u; borne: by the bone, of an acceleration. */
-SLIDING_FUNCTION void sliding_finish(const sliding_ground *g, const sliding_node *n, const sliding_bones *b,
-                                     double borne, double dt, const double *u, double *v)
-{
-    if (!(g->friction > 0) || !(borne > 0))
-        return;
-    const sliding_touch t = sliding_at(g, n, &b->was, u);
-    sliding_rub(n, &t, &b->past, &b->was, g->friction * borne * dt / 2, dt, v);
-}
-
 /* Puts u and v back to the bone after the predictor, and rubs. */
 SLIDING_FUNCTION void sliding_place(const sliding_ground *g, const sliding_node *n, const sliding_bones *b,
                                     double borne, double dt, double *u, double *v)
@@ -262,12 +250,13 @@ SLIDING_FUNCTION void sliding_go(const sliding_ground *g, const sliding_node *n,
     const double drag = s->damping * s->dt / 2;
     for (int i = 0; i < 3; i++)
         a[i] = n->hold[i] == SLIDING_FREE ? a[i] : 0;
-    const double borne = sliding_bear(g, n, &b->was, u, a);
+    const sliding_touch t = sliding_at(g, n, &b->was, u);
+    const double borne = sliding_bear(g, n, &t, a);
     for (int i = 0; i < 3; i++)
         if (n->hold[i] == SLIDING_FREE && s->finishes)
             v[i] = v[i] * (1 - drag) + s->dt / 2 * a[i];
-    if (s->finishes)
-        sliding_finish(g, n, b, borne, s->dt, u, v);
+    if (s->finishes && g->friction > 0)
+        sliding_rub(n, &t, &b->past, &b->was, g->friction * borne * s->dt / 2, s->dt, v);
     if (!s->begins)
         return;
     for (int i = 0; i < 3; i++) {
@@ -295,11 +284,12 @@ typedef struct sliding_load {
 SLIDING_FUNCTION sliding_load sliding_load_of(const sliding_ground *g, const sliding_node *n, const sliding_bone *bone,
                                               const double *u, const double *net)
 {
+    const sliding_touch t = sliding_at(g, n, bone, u);
     sliding_load load;
     double left[3];
     for (int a = 0; a < 3; a++)
         load.stuck[a] = left[a] = n->hold[a] == SLIDING_FREE ? net[a] : 0;
-    load.pressed = fmax(sliding_bear(g, n, bone, u, left), 0);
+    load.pressed = fmax(sliding_bear(g, n, &t, left), 0.);
     const double most = g->friction * load.pressed, along = sliding_length(left),
                  part = along > most ? most / along : 1;
     for (int a = 0; a < 3; a++) {

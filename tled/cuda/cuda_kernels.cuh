@@ -490,9 +490,10 @@ static __device__ void one_node(const cuda_view<real> &v, const cuda_pass &p, co
 {
     const int32_t n = t.node + i;
     const int place = own.info & TILE_PLACE;
-    if (p.what & PASS_INTERNAL) {
+    const bool is_apart = own.info >> TILE_APART & 1;
+    if (p.what & PASS_INTERNAL || is_apart) {
         p.to[n] = f.x, p.to[v.stride + n] = f.y, p.to[2 * v.stride + n] = f.z;
-        if (!(p.what & PASS_FINISH))
+        if (is_apart || !(p.what & PASS_FINISH))
             return;
     }
     real u[3] = {grid[place], grid[G::PLACES + place], grid[2 * G::PLACES + place]};

@@ -10,23 +10,53 @@
 
 /* ---- passes */
 
-/* Puts the curves' values of steps `first` to first + count of a plan on the card; *rows gets where. */
+/* Puts the curves' values of steps `first` to first + count of a plan on the card, after those of the step before;
+ * *rows gets where. */
 static int put_table(cuda_state *s, const tled_plan *plan, int64_t first, int64_t count, const double **rows, err *e)
 {
     const int which = (int)(s->tables++ % TABLES);
     const int64_t row = 3 * s->p->script->curves;
-    *rows = s->table[which];
+    *rows = s->table[which] + row;
     if (!row)
         return 0;
     if (CUDA_TRY(cudaEventSynchronize(s->table_free[which])))
         return -1;
-    for (int64_t i = 0; i <= count; i++)
-        tled_curves(s->p, tled_time(plan, first + i), s->table_host[which] + i * row);
-    return CUDA_TRY(cudaMemcpyAsync(s->table[which], s->table_host[which], (size_t)((count + 1) * row) * sizeof(double),
+    for (int64_t i = 0; i < count + 2; i++)
+        tled_curves(s->p, tled_time(plan, first - 1 + i), s->table_host[which] + i * row);
+    return CUDA_TRY(cudaMemcpyAsync(s->table[which], s->table_host[which], (size_t)((count + 2) * row) * sizeof(double),
                                     cudaMemcpyHostToDevice, s->stream)) ||
                    CUDA_TRY(cudaEventRecord(s->table_free[which], s->stream))
                ? -1
                : 0;
+}
+
+/* The steps of nodes that slide, after a pass that left them where they were. */
+static int slide(cuda_state *s, const cuda_batch *b, err *e)
+{
+    const int64_t row = 3 * s->p->script->curves;
+    const bool begins = b->first < b->count;
+    const cuda_slide c = {s->view,
+                          s->sliders,
+                          begins ? s->spare : s->field[TLED_DISPLACEMENT],
+                          begins ? s->field[TLED_DISPLACEMENT] : s->spare,
+                          s->field[TLED_VELOCITY],
+                          b->rows - row,
+                          b->rows,
+                          b->rows + row,
+                          {1 / b->plan->rate, b->plan->damping, b->first > 0, begins, NULL}};
+    return card_check(slide_start(c, s->stream), "the start of sliding", s->step, e);
+}
+
+static int take_passes(cuda_state *s, const cuda_batch *b, err *e)
+{
+    if (!s->p->sliding)
+        return s->method->passes(s, b, e);
+    for (int64_t i = 0; i < b->passes; i++) {
+        const cuda_batch one = {b->plan, b->rows + 3 * i * s->p->script->curves, b->first + i, 1, b->count};
+        if (s->method->passes(s, &one, e) || slide(s, &one, e))
+            return -1;
+    }
+    return 0;
 }
 
 static int cuda_step(cuda_state *s, const tled_plan *plan, int64_t count, err *e)
@@ -37,7 +67,7 @@ static int cuda_step(cuda_state *s, const tled_plan *plan, int64_t count, err *e
         if (put_table(s, plan, first, first + passes > count ? passes - 1 : passes, &rows, e))
             return -1;
         const cuda_batch batch = {plan, rows, first, passes, count};
-        if (s->method->passes(s, &batch, e))
+        if (take_passes(s, &batch, e))
             return -1;
         s->step += passes - (first == 0);
     }
@@ -61,7 +91,7 @@ static int find_internal(cuda_state *s, err *e)
 
 /* ---- in and out */
 
-/* A number whose last bits have room for MARCH_BITS: to 1e-6 of it. */
+/* A number whose last bits have room for MARCH_BITS: to 2e-6 of it. */
 static uint32_t weight_bits(double weight)
 {
     const float number = (float)weight;
@@ -74,7 +104,7 @@ static uint32_t weight_bits(double weight)
 static float fourth(const cuda_state *s, bool is_displacement, int64_t k)
 {
     const uint32_t info = s->tiles.node_info[k];
-    uint32_t bits = (info >> TILE_EXTRA & 1) << MARCH_EXTRA;
+    uint32_t bits = (info >> TILE_EXTRA & 1) << MARCH_EXTRA | (info >> TILE_APART & 1) << MARCH_APART;
     float number;
     if (is_displacement)
         return (float)(1 / s->p->mass[s->tiles.node[k]]);
@@ -173,6 +203,14 @@ static int64_t cuda_bytes(const cuda_state *s)
     return s->bytes + (s->saved_internal ? rows : 0) + (s->frame ? frame_bytes(s) : 0);
 }
 
+static int look_at_sliders(cuda_state *s, const cuda_look<real> *of, err *e)
+{
+    const cuda_slide_look l = {
+        s->view, s->sliders, of->displacement, of->velocity, of->internal, of->saved_displacement, of->saved_internal,
+        of->now, s->sums};
+    return card_check(slide_look_start(l, s->stream), "the start of a look at sliding", s->step, e);
+}
+
 static int cuda_monitor(cuda_state *s, const tled_question *q, tled_sums *sums, err *e)
 {
     tled_plan here = {q->time, 1, 0, 0};
@@ -197,6 +235,7 @@ static int cuda_monitor(cuda_state *s, const tled_question *q, tled_sums *sums, 
                          s->p->control.kind,
                          s->fibres};
     if (card_check(cuda_look_start(&l, s->sums, s->stream), "the start of a look", s->step, e) ||
+        (s->p->sliding && look_at_sliders(s, &l, e)) ||
         CUDA_TRY(cudaMemcpyAsync(s->sums_host, s->sums, sizeof *s->sums, cudaMemcpyDeviceToHost, s->stream)) ||
         CUDA_TRY(cudaStreamSynchronize(s->stream)))
         return -1;
@@ -303,6 +342,18 @@ static int put_flags(cuda_state *s, err *e)
     return failed ? -1 : 0;
 }
 
+/* What the script does to nodes that slide, and to their bones. */
+static int put_sliders(cuda_state *s, err *e)
+{
+    const sliding *of = s->p->sliding;
+    cuda_slider *made = of ? make_sliders(s, e) : NULL;
+    const int failed =
+        of && (!made || put_array(s, s->sliders.slider, made, of->count * (int64_t)sizeof *made, e) ||
+               put_array(s, s->sliders.ground.field, of->field, of->fields * (int64_t)sizeof *of->field, e));
+    free(made);
+    return failed ? -1 : 0;
+}
+
 /* Curves that contract muscles stay where they are: lines of that kind change values alone. */
 static int cuda_reload(cuda_state *s, err *e)
 {
@@ -313,7 +364,8 @@ static int cuda_reload(cuda_state *s, err *e)
         return 1;
     s->spare_is_internal = false;
     const int64_t infos = s->tiles.nodes * (int64_t)sizeof *s->tiles.node_info;
-    if (put_script(s, e) || put_array(s, s->view.node_info, s->tiles.node_info, infos, e) || put_flags(s, e))
+    if (put_script(s, e) || put_array(s, s->view.node_info, s->tiles.node_info, infos, e) || put_flags(s, e) ||
+        put_sliders(s, e))
         return -1;
     return CUDA_TRY(cudaDeviceSynchronize());
 }
@@ -323,7 +375,7 @@ static int64_t cuda_computed(const cuda_state *s)
     return s->method->computed(s);
 }
 
-enum { CUDA_FEATURES = EXECUTOR_USUAL };
+enum { CUDA_FEATURES = EXECUTOR_USUAL | EXECUTOR_SLIDING };
 
 const tled_executor CUDA_EXECUTOR = {
     .is = {.device = "cuda", .features = CUDA_FEATURES, .forms = TILES_FORMS, .unusable = card_unusable},

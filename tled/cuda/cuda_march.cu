@@ -447,6 +447,14 @@ static __device__ __forceinline__ void take_first(const cuda_march &m, const cud
     arrived<0>();
 }
 
+/* Which of p.kind a pass is. */
+static __device__ __forceinline__ int kind_at(const cuda_march_pass &p, uint32_t pass)
+{
+    if (pass == 0 && !p.amid)
+        return MARCH_FIRST;
+    return p.ends && pass + 1 == (uint32_t)p.passes ? MARCH_LAST : MARCH_STEP;
+}
+
 /* Blocks take units in turn, pass after pass. What special cells take in registers, units without them do without; nor
  * do passes that end a step and begin the next ask what they are. SPECIALS: the model has special cells; CUTS: some of
  * them are cut. */
@@ -466,7 +474,7 @@ static __global__ void __launch_bounds__(MARCH_THREADS, TOGETHER)
         t.pass = turn / units;
         if (t.pass >= (uint32_t)p.passes)
             break;
-        t.kind = t.pass == 0 ? MARCH_FIRST : p.ends && t.pass + 1 == (uint32_t)p.passes ? MARCH_LAST : MARCH_STEP;
+        t.kind = kind_at(p, t.pass);
         t.base = (int32_t)__float_as_uint(next.x);
         t.cells = (int32_t)__float_as_uint(next.y);
         const bool special = __float_as_uint(next.z);

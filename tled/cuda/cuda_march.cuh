@@ -17,7 +17,8 @@ extern "C" {
 enum {
     MARCH_FREE = 0,  /* bit MARCH_FREE + a: nothing holds component a */
     MARCH_EXTRA = 3, /* displaced by the script, or forces act on it */
-    MARCH_BITS = 15  /* all of these */
+    MARCH_APART = 4, /* it slides on bone: its step is another kernel's; then none of the above */
+    MARCH_BITS = 31  /* all of these */
 };
 
 /* V/V', by which the march's numbers of a law are multiplied under physical control. */
@@ -169,6 +170,7 @@ typedef struct cuda_march_pass {
     cuda_march_kind
         kind[MARCH_KINDS]; /* of the first; of the last, where it `ends` and is not the first; of the others */
     int32_t row, passes, ends;
+    int32_t amid;            /* the first ends a step and begins the next, as the others */
     uint32_t number, ticket; /* of the first pass, from 1 on; units taken before */
 } cuda_march_pass;
 

@@ -55,6 +55,12 @@ static __device__ __forceinline__ void put_node(const cuda_march_pass &p, const 
         *(float4 *)node_of(p.velocity, word) = v;
 }
 
+/* Leaves what elements pull at a node with, N, where its next displacement goes else. */
+static __device__ __forceinline__ void put_pull(const void *to, float x, float y, float z, float fourth)
+{
+    *(float4 *)to = make_float4(x, y, z, fourth);
+}
+
 /* The forces at a thread's node, and its step, if it is owned; forces, node, speed: where its
  * forces, displacement and velocity stand. */
 template <bool STEP, bool CUTS>
@@ -75,8 +81,12 @@ static __device__ __forceinline__ void move_node(const cuda_march &m, const cuda
         gravity.x *= weight, gravity.y *= weight, gravity.z *= weight;
     const cuda_march_kind &k = kind_of<STEP>(p, t);
     if (!STEP && k.what & PASS_INTERNAL)
-        *(float4 *)node_of(to_of(p, t), word) = make_float4(m.force * sum.x, m.force * sum.y, m.force * sum.z, u.w);
+        put_pull(node_of(to_of(p, t), word), m.force * sum.x, m.force * sum.y, m.force * sum.z, u.w);
     if (bits != 7) {
+        if (bits >> MARCH_APART & 1) {
+            put_pull(node_of(to_of(p, t), word), m.force * sum.x, m.force * sum.y, m.force * sum.z, u.w);
+            return;
+        }
 #pragma unroll 1
         for (int a = 0; bits && a < 3; a++) /* of what is held and not displaced, all stays */
             move_held<STEP>(m, p, t, speed, word, node, bits, a, a == 0 ? sum.x : a == 1 ? sum.y : sum.z, weight);

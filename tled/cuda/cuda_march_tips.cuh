@@ -89,8 +89,10 @@ static __device__ __forceinline__ void move_tip(const cuda_march &m, const cuda_
     const tile_extra *x = bits >> MARCH_EXTRA & 1 ? cuda_extra(m.v, (int32_t)n) : NULL;
     const float sum[3] = {pull.x, pull.y, pull.z};
     float u[3] = {from.x, from.y, from.z}, v[3] = {speed.x, speed.y, speed.z};
-    if (k.what & PASS_INTERNAL)
-        *(float4 *)nth(to_of(p, t), n) = make_float4(sum[0], sum[1], sum[2], from.w);
+    if (k.what & PASS_INTERNAL || bits >> MARCH_APART & 1)
+        put_pull(nth(to_of(p, t), n), sum[0], sum[1], sum[2], from.w);
+    if (bits >> MARCH_APART & 1)
+        return;
 #pragma unroll
     for (int a = 0; a < 3; a++) {
         const int axis = m.axis[a];

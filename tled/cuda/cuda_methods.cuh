@@ -164,7 +164,7 @@ static int64_t tiles_computed(const cuda_state *s)
 static int resident_take(cuda_state *s, bool *takes, err *e)
 {
     (void)e;
-    *takes = s->tiles.count <= s->places;
+    *takes = s->tiles.count <= s->places && !s->p->sliding; /* whose steps are taken between passes */
     return 0;
 }
 
@@ -424,6 +424,7 @@ static int march_on(cuda_state *s, const tled_plan *plan, const double *now, int
                                3 * (int32_t)s->p->script->curves,
                                (int32_t)passes,
                                ends,
+                               first == (PASS_BEGIN | PASS_FINISH),
                                s->walked + 1,
                                s->tickets};
     const march_control control = march_control_for(s->p, s->march.families);

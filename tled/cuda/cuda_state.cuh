@@ -6,10 +6,11 @@
 
 #include "solve/card_layout.cuh"
 #include "tled/cuda/cuda_resident.cuh"
+#include "tled/cuda/cuda_sliding.cuh"
 
 #include "tled/cuda/cuda_march.cuh" /* wants element.h before it */
 
-enum { TABLE_STEPS = 256, TABLES = 2, COPY_CHUNK = 4096, WIDENERS = 4 };
+enum { TABLE_STEPS = 256, TABLE_ROWS = TABLE_STEPS + 2, TABLES = 2, COPY_CHUNK = 4096, WIDENERS = 4 };
 
 /* Bytes: a frame that is copied sooner than it is worth its own memory on the card. */
 #ifndef FRAME_DIRECT
@@ -32,12 +33,14 @@ typedef struct cuda_numbers {
     cuda_fibres<real> *fibres; /* as, until the struct ends, of models with fibres or cut elements; else NULL */
     cuda_fibres<double> *fibres_looked_at;
     real *family, *mixfamily; /* or NULL */
+    cuda_slider *slider;      /* or NULL */
 } cuda_numbers;
 
 /* Passes that follow each other, of those of `count` steps: what_of says what each does. */
 typedef struct cuda_batch {
     const tled_plan *plan;
-    const double *rows; /* on the card: the curves' values where the state stands, then after each step */
+    const double *rows; /* on the card: the curves' values where the state stands, then after each step; and before it,
+                           unless nothing is */
     int64_t first, passes, count;
 } cuda_batch;
 
@@ -83,6 +86,7 @@ struct tled_state {
     int64_t extras, forces;
     real *field[FIELDS_MOST]; /* of the problem's table, as layout_of says */
     real *spare;              /* as displacements are */
+    cuda_sliders sliders;     /* on the card */
     int64_t numbers;          /* of each of those that steps move: 3 x stride, or, where it marches, 4 x stride */
     uint64_t *message;        /* between tiles that are resident */
     uint32_t messages;        /* passes that they have sent them for */
@@ -92,7 +96,7 @@ struct tled_state {
     pool *wideners;           /* make doubles of it on the host, beside those of the run: made with it */
     bool spare_is_internal, has_saved_internal;
     bool frame_direct;          /* there is no room for `frame` */
-    double *table[TABLES];      /* on the card: TABLE_STEPS + 1 rows of the curves' values */
+    double *table[TABLES];      /* on the card: TABLE_ROWS rows of the curves' values */
     double *table_host[TABLES]; /* pinned */
     cudaEvent_t table_free[TABLES], frame_free, frame_ready;
     int64_t tables; /* filled so far */
@@ -208,6 +212,13 @@ static void list_problem(cuda_state *s, const cuda_numbers *numbers, card_layout
     card_layout_copy(l, &v->moments, p->cut.of, CUT_MOMENTS * p->cut.count);
     card_layout_copy(l, &v->weight, numbers->weight, t->nodes);
     v->directions = t->directions;
+    if (p->sliding) {
+        s->sliders.ground = p->sliding->ground;
+        s->sliders.count = (int32_t)p->sliding->count;
+        card_layout_copy(l, &s->sliders.slider, numbers->slider, p->sliding->count);
+        card_layout_copy(l, &s->sliders.ground.field, p->sliding->field, p->sliding->fields);
+        card_layout_copy(l, &s->sliders.ground.value, p->sliding->ground.value, sliding_samples(p->sliding));
+    }
     card_layout_add(l, &v->extra, s->extras);
     card_layout_add(l, &v->force_curve, s->forces);
     card_layout_add(l, &v->force_spring, s->forces);
@@ -227,7 +238,7 @@ static void list_state(cuda_state *s, const cuda_numbers *numbers, card_layout *
     for (int i = CUDA_STEPPED; i < s->p->fields.count; i++)
         card_layout_add(l, &s->field[i], layout_of(s, i).numbers);
     for (int i = 0; i < TABLES; i++)
-        card_layout_add(l, &s->table[i], (TABLE_STEPS + 1) * 3 * s->curves);
+        card_layout_add(l, &s->table[i], TABLE_ROWS * 3 * s->curves);
     card_layout_add(l, &s->look_parts, (int64_t)cuda_look_bytes(s->tiles.count));
     card_layout_add(l, &s->sums, 1);
 }
@@ -243,7 +254,7 @@ static int make_events(cuda_state *s, err *e)
         CUDA_TRY(cudaMallocHost((void **)&s->staging, (size_t)largest_field(s) * sizeof(real))))
         return -1;
     for (int i = 0; i < TABLES; i++)
-        if (CUDA_TRY(cudaMallocHost((void **)&s->table_host[i], (TABLE_STEPS + 1) * row)) ||
+        if (CUDA_TRY(cudaMallocHost((void **)&s->table_host[i], TABLE_ROWS * row)) ||
             CUDA_TRY(cudaEventCreateWithFlags(&s->table_free[i], cudaEventDisableTiming)))
             return -1;
     return 0;
@@ -346,6 +357,17 @@ static int make_weight(cuda_numbers *n, const cuda_state *s, err *e)
     return n->weight ? 0 : -1;
 }
 
+/* The caller's to free. NULL with e filled. */
+static cuda_slider *make_sliders(const cuda_state *s, err *e)
+{
+    int32_t *stand = (int32_t *)mem_array(s->p->nodes, sizeof *stand, "the solver", e);
+    for (int64_t k = 0; stand && k < s->p->nodes; k++)
+        stand[s->tiles.node[k]] = (int32_t)k;
+    cuda_slider *made = stand ? slider_list(s->p, stand, e) : NULL;
+    free(stand);
+    return made;
+}
+
 static int make_numbers(cuda_numbers *n, const cuda_state *s, err *e)
 {
     const tled_problem *p = s->p;
@@ -374,6 +396,8 @@ static int make_numbers(cuda_numbers *n, const cuda_state *s, err *e)
             law[k] = (real)v->law.hourglass[k - coefficients];
     }
     put_mixtures(p, n->mixture);
+    if (p->sliding && !(n->slider = make_sliders(s, e)))
+        return -1;
     return make_fibres(n, s, e);
 }
 
@@ -424,6 +448,7 @@ out:
     free(numbers.fibres_looked_at);
     free(numbers.family);
     free(numbers.mixfamily);
+    free(numbers.slider);
     return result;
 }
 

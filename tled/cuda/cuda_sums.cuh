@@ -9,8 +9,8 @@
 #include <stdint.h>
 
 extern "C" {
-#include "tled/cuda/tiles.h"
 #include "tled/problem/tled_executor.h"
+#include "tled/tiles/tiles.h"
 }
 
 enum { NONE = INT32_MAX }; /* of cells; the least of some is told */

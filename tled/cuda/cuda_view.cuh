@@ -21,7 +21,7 @@ extern "C" {
 #include "physics/element_cut.h"
 #include "solve/card.h"
 #include "tled/cuda/cuda.h"
-#include "tled/cuda/tiles.h"
+#include "tled/tiles/tiles.h"
 }
 
 #include "solve/start.cuh"

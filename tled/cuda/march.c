@@ -2,12 +2,12 @@
 
 #include "base/mem.h"
 #include "mesh/lattice.h"
-#include "tled/cuda/lattice_sheet.h"
 #include "tled/cuda/march_cells.h"
 #include "tled/cuda/march_near.h"
 #include "tled/cuda/march_tips.h"
 #include "tled/cuda/march_units.h"
-#include "tled/cuda/places.h"
+#include "tled/tiles/lattice_sheet.h"
+#include "tled/tiles/places.h"
 
 #include <math.h>
 #include <stdlib.h>

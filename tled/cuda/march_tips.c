@@ -2,8 +2,8 @@
 
 #include "base/mem.h"
 #include "mesh/lattice.h"
-#include "tled/cuda/lattice_sheet.h"
 #include "tled/cuda/march_cells.h"
+#include "tled/tiles/lattice_sheet.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -21,7 +21,8 @@ void words_start(const session *s, const char *device, const struct options *o)
     if (p->films)
         tool_say(s->t, "%lld films hang on bone", (long long)films_count(p));
     if (p->sliding)
-        tool_say(s->t, "%lld nodes slide on bone, friction %g", (long long)p->sliding->count, p->sliding->ground.friction);
+        tool_say(s->t, "%lld nodes slide on bone, friction %g", (long long)p->sliding->count,
+                 p->sliding->ground.friction);
     if (p->self_contact)
         tool_say(s->t, "%lld samples of skin may touch %lld elements, friction %g", (long long)p->self_contact->samples,
                  (long long)p->self_contact->elements, p->self_contact->friction);

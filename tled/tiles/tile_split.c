@@ -1,8 +1,8 @@
-#include "tled/cuda/tile_split.h"
+#include "tled/tiles/tile_split.h"
 
 #include "base/mem.h"
 #include "mesh/lattice.h"
-#include "tled/cuda/lattice_sheet.h"
+#include "tled/tiles/lattice_sheet.h"
 
 #include <stdlib.h>
 #include <string.h>

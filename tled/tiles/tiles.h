@@ -44,6 +44,7 @@ enum {
     TILE_CORNERS = 11,      /* of a node: bit TILE_CORNERS + c: it is corner c of an element */
     TILE_FREE = 19,         /* of a node: bit TILE_FREE + a: nothing holds component a */
     TILE_EXTRA = 22,        /* of a node: displaced by the script, or forces act on it */
+    TILE_APART = 23,        /* of a node that slides on bone: its step is another kernel's; then none of the above */
     TILE_OWN = 11,          /* of a cell: its low corner is owned here: of all tiles this is so in one */
     TILE_VOLUME = 12,       /* of a cell: its volume, from this bit on */
     TILE_VOLUMES = 1 << 20, /* as many volumes as that can tell */

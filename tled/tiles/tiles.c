@@ -1,9 +1,10 @@
-#include "tled/cuda/tiles.h"
+#include "tled/tiles/tiles.h"
 
 #include "base/mem.h"
-#include "tled/cuda/lattice_sheet.h"
-#include "tled/cuda/places.h"
-#include "tled/cuda/tile_split.h"
+#include "tled/contact/sliding.h"
+#include "tled/tiles/lattice_sheet.h"
+#include "tled/tiles/places.h"
+#include "tled/tiles/tile_split.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -125,14 +126,15 @@ static int32_t place_in(const cutter *c, int64_t which, int64_t node)
 /* What the script does to a node, as bits. */
 static uint32_t script_info(const tled_problem *p, int32_t n)
 {
-    uint32_t info = 0;
-    bool extra = p->force_start[n + 1] > p->force_start[n];
+    uint32_t info = 0, extra = p->force_start[n + 1] > p->force_start[n];
+    if (p->sliding && p->sliding->row[n] >= 0)
+        return 1u << TILE_APART;
     for (int a = 0; a < 3; a++) {
         int32_t hold = p->hold[3 * (int64_t)n + a];
         info |= (uint32_t)(hold == HOLD_FREE) << (TILE_FREE + a);
         extra |= hold >= 0;
     }
-    return info | (uint32_t)extra << TILE_EXTRA;
+    return info | extra << TILE_EXTRA;
 }
 
 static uint32_t info_of(const cutter *c, int32_t n, int32_t place)
@@ -514,11 +516,10 @@ static int list_extras(tiles *t, const tled_problem *p, err *e)
         if (t->node_info[k] >> TILE_EXTRA & 1) {
             int64_t n = t->node[k];
             const int32_t *hold = p->hold + 3 * n;
-            int32_t first = p->force_start[n];
             *to++ = (tile_extra){.node = k,
                                  .hold = {hold[0], hold[1], hold[2]},
-                                 .force = first,
-                                 .forces = p->force_start[n + 1] - first,
+                                 .force = p->force_start[n],
+                                 .forces = p->force_start[n + 1] - p->force_start[n],
                                  .rest = {p->position[3 * n], p->position[3 * n + 1], p->position[3 * n + 2]}};
         }
     return 0;

@@ -1,7 +1,7 @@
-#include "tled/cuda/lattice_sheet.h"
+#include "tled/tiles/lattice_sheet.h"
 
 #include "base/mem.h"
-#include "tled/cuda/places.h"
+#include "tled/tiles/places.h"
 
 #include <stdlib.h>
 #include <string.h>

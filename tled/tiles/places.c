@@ -1,4 +1,4 @@
-#include "tled/cuda/places.h"
+#include "tled/tiles/places.h"
 
 #include "base/mem.h"
 #include "mesh/lattice.h"

@@ -5,7 +5,7 @@
 #ifndef SINEW_TILE_SPLIT_H
 #define SINEW_TILE_SPLIT_H
 
-#include "tled/cuda/tiles.h"
+#include "tled/tiles/tiles.h"
 
 /* Cells put into the grid of a tile whose nodes are at the end of a slit: two nodes have one place in the lattice
  * there, so that cells cannot all stand as they lie in it. Each stands where the most of its corners are already, and
