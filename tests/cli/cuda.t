@@ -73,6 +73,15 @@ done
 check "and the CPU's bytes" sinew diff --only node.displacement,node.velocity "$T/slid.cpu" "$T/slid.cuda"
 check "in two parts as well" sinew diff --only node.displacement,node.velocity "$T/parts.cpu" "$T/parts.cuda"
 check "and at rest" sinew diff --only node.displacement --abs 1e-8 "$T/rests.cpu" "$T/rests.cuda"
+# ---- A probe on nodes that slide, and a convex one.
+awk 'BEGIN { for (i = 0; i <= 20; i++) printf "%.3f .016 .014 %.5f 1 0 0 0\n", i / 200, .0101 - i * 5e-5 }' >"$T/press.tum"
+cp tests/cli/cube.obj "$T"
+same "a probe" "$T/slides.sinew" -g .4,.2,-9.81 --probe curved:2cm,60,8mm --poses "$T/press.tum"
+same "a convex probe" "$T/slides.sinew" -g .4,.2,-9.81 --unit mm --probe "convex:$T/cube.obj" --poses "$T/press.tum"
+for device in cpu cuda; do
+    run "$T/slides.sinew" -q -d $device -n 1000 -g .4,.2,-9.81 --friction .3 --probe sphere:1cm --poses "$T/press.tum" --every .01 >"$T/pressed.$device"
+done
+check "in double the CPU's numbers but for rounding, and what presses" sinew diff --abs 1e-9 "$T/pressed.cpu" "$T/pressed.cuda"
 logged() { # NAME ARG...: the CPU's log in columns 1 to 13, and how many elements of muscles fall
     name=$1
     shift

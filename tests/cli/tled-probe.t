@@ -96,10 +96,6 @@ check "poses in millimetres" tled-run --probe sphere:2cm --poses "$T/mm.tum" -n 
 is "$(grep -c 'the probe never comes near the tissue; expected poses in metres' "$T/stderr")" 1 "are said to be far away"
 check "poses in metres" tled-run --probe sphere:2cm --poses "$T/press.tum" -n 5 -o /dev/null <"$T/block.sinew"
 is "$(grep -c 'never comes near' "$T/stderr")" 0 "have no such word"
-no_card='no contact with a probe; expected -d cpu or auto|this build has no CUDA back end; have: cpu'
-fails 1 "no probe on CUDA" "$no_card" tled-run -d cuda --probe sphere:2cm --poses "$T/press.tum" -t .1 <"$T/block.sinew"
-check "auto takes the CPU" tled-run -d auto --probe sphere:2cm --poses "$T/press.tum" -n 5 -o /dev/null <"$T/block.sinew"
-is "$(grep -c 'cpu (the one with contact' "$T/stderr")" 1 "and says so"
 fails 2 "poses without a probe" 'expected both' tled-run --poses "$T/press.tum" -t .1 <"$T/block.sinew"
 { cat "$T/inside.tum"; echo 'method fem'; } >"$T/method.tum"
 fails 1 "a change of method" 'method.tum:2: .*expected poses alone' tled-run --probe sphere:2cm --poses "$T/method.tum" -t .1 <"$T/block.sinew"

@@ -11,8 +11,8 @@
 #include "tled/cuda/cuda.h"
 #include "tled/cuda/march_near.h"
 #include "tled_history.h"
+#include "tled_trial_contact.h"
 #include "tled_trial_cuts.h"
-#include "tled_trial_sliding.h"
 
 /* Steps, of a lump on so many processors, in a test of what is left out. */
 enum { OMITTED_STEPS = 8, OMITTED_ON = 6, OMITTED_NODES = 18 * 10 * 7 };
@@ -550,6 +550,7 @@ int main(void)
     test_fibres_looks(2 * more);
     test_cuts(more);
     test_sliding(2 * more);
+    test_pressing(2 * more);
     test_live(&marching, false, "a march");
     if (all_of_it) {
         test_live(&marching, true, "a march, made again");

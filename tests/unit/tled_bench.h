@@ -6,6 +6,7 @@
 
 #include "tled/contact/sliding.h"
 #include "tled/cpu/cpu.h"
+#include "tled/problem/collider.h"
 #include "tled/problem/step.h"
 #include "tled/problem/support.h"
 #include "tled/run/relax.h"
@@ -33,7 +34,8 @@ typedef struct bench {
     tled_problem problem;
     run_setup setup;
     run_end end;
-    sliding sliding; /* of no nodes, unless a test makes it */
+    sliding sliding; /* of no nodes, unless a test makes it, as: */
+    collider probe;
     err e;
     double *displacement, *velocity, time; /* the last frame's */
     int64_t frames, cuts;                  /* written; the most parts that a step was cut in */
@@ -131,6 +133,7 @@ static inline void bench_free(bench *b)
 {
     pool_destroy(b->setup.threads);
     sliding_free(&b->sliding);
+    collider_free(&b->probe);
     tled_problem_free(&b->problem);
     script_free(&b->script);
     model_free(&b->m);

@@ -141,6 +141,22 @@ static inline void add_sliding(bench *b, const block *what)
     bench_must(sliding_make(&b->sliding, &b->problem, &b->m, .1, &b->e), &b->e);
 }
 
+/* What presses on the block's top, past the middle, and goes down and aside; NULL: nothing does. */
+static const probe *in_pressing;
+
+static inline void add_probe(bench *b, const block *what)
+{
+    const double *h = what->side, top = what->cells[2] * h[2], depth = .3 * h[2];
+    pose at = {{.6 * what->cells[0] * h[0], .4 * what->cells[1] * h[1], top}, {1, 0, 0, 0}};
+    b->probe.shape = *in_pressing;
+    bench_must(collider_begin_live(&b->probe, &b->e), &b->e);
+    collider_move(&b->probe, 0, 0, &at);
+    at.position[0] += h[0];
+    at.position[2] -= depth;
+    collider_move(&b->probe, 0, .05, &at);
+    collider_join(&b->probe, &b->problem, 1);
+}
+
 /* So many steps of a fraction of the stable one, which is never cut, so that both take the same. */
 static inline void make(bench *b, const block *what, double level, bool scripted, const tled_executor *device,
                         int64_t steps)
@@ -152,6 +168,8 @@ static inline void make(bench *b, const block *what, double level, bool scripted
         put_in_form(&b->problem);
     if (in_sliding)
         add_sliding(b, what);
+    if (in_pressing)
+        add_probe(b, what);
     bench_steps(b, steps, b->setup.damping);
     b->setup.device = device;
     b->setup.rate = 3 / step_at_rest(&b->problem, NULL);

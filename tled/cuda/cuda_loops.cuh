@@ -10,6 +10,25 @@
 
 /* ---- passes */
 
+/* What a probe pushes with at a time, after a pass of so long a step that damps so much. */
+static int press(cuda_state *s, double time, double dt, double damping, bool finishes, bool begins, err *e)
+{
+    const collider *of = s->p->collider;
+    if (!of || of->is_away)
+        return 0;
+    cuda_press c = {s->view,
+                    s->position,
+                    collider_at(of, time),
+                    of->stiffness * collider_up(of, time),
+                    begins ? s->spare : s->field[TLED_DISPLACEMENT],
+                    begins ? s->field[TLED_DISPLACEMENT] : s->spare,
+                    s->field[TLED_VELOCITY],
+                    press_further(dt, damping, finishes, begins),
+                    begins ? dt : 0};
+    c.at.shape.plane = (double *)s->plane;
+    return card_check(press_start(c, s->stream), "the start of contact", s->step, e);
+}
+
 /* Puts the curves' values of steps `first` to first + count of a plan on the card, after those of the step before;
  * *rows gets where. */
 static int put_table(cuda_state *s, const tled_plan *plan, int64_t first, int64_t count, const double **rows, err *e)
@@ -35,6 +54,8 @@ static int slide(cuda_state *s, const cuda_batch *b, err *e)
 {
     const int64_t row = 3 * s->p->script->curves;
     const bool begins = b->first < b->count;
+    if (!s->p->sliding)
+        return 0;
     const cuda_slide c = {s->view,
                           s->sliders,
                           begins ? s->spare : s->field[TLED_DISPLACEMENT],
@@ -49,11 +70,14 @@ static int slide(cuda_state *s, const cuda_batch *b, err *e)
 
 static int take_passes(cuda_state *s, const cuda_batch *b, err *e)
 {
-    if (!s->p->sliding)
+    if (!has_more(s->p))
         return s->method->passes(s, b, e);
     for (int64_t i = 0; i < b->passes; i++) {
         const cuda_batch one = {b->plan, b->rows + 3 * i * s->p->script->curves, b->first + i, 1, b->count};
-        if (s->method->passes(s, &one, e) || slide(s, &one, e))
+        if (s->method->passes(s, &one, e) ||
+            press(s, tled_time(b->plan, one.first), 1 / b->plan->rate, b->plan->damping, one.first > 0,
+                  one.first < b->count, e) ||
+            slide(s, &one, e))
             return -1;
     }
     return 0;
@@ -86,7 +110,7 @@ static int find_internal(cuda_state *s, err *e)
     here.origin = s->time;
     if (put_table(s, &here, 0, 0, &rows, e))
         return -1;
-    return s->method->internal(s, &here, rows, e);
+    return s->method->internal(s, &here, rows, e) ? -1 : press(s, s->time, 0, 0, false, false, e);
 }
 
 /* ---- in and out */
@@ -375,7 +399,7 @@ static int64_t cuda_computed(const cuda_state *s)
     return s->method->computed(s);
 }
 
-enum { CUDA_FEATURES = EXECUTOR_USUAL | EXECUTOR_SLIDING };
+enum { CUDA_FEATURES = EXECUTOR_USUAL | EXECUTOR_SLIDING | EXECUTOR_CONTACT };
 
 const tled_executor CUDA_EXECUTOR = {
     .is = {.device = "cuda", .features = CUDA_FEATURES, .forms = TILES_FORMS, .unusable = card_unusable},

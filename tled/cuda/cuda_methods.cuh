@@ -161,10 +161,16 @@ static int64_t tiles_computed(const cuda_state *s)
 
 /* ---- resident tiles */
 
+/* Whether there is more to do after each pass (take_passes). */
+static bool has_more(const tled_problem *p)
+{
+    return p->sliding || p->collider;
+}
+
 static int resident_take(cuda_state *s, bool *takes, err *e)
 {
     (void)e;
-    *takes = s->tiles.count <= s->places && !s->p->sliding; /* whose steps are taken between passes */
+    *takes = s->tiles.count <= s->places && !has_more(s->p);
     return 0;
 }
 

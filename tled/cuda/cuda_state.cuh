@@ -5,6 +5,7 @@
 #define SINEW_CUDA_STATE_CUH
 
 #include "solve/card_layout.cuh"
+#include "tled/cuda/cuda_press.cuh"
 #include "tled/cuda/cuda_resident.cuh"
 #include "tled/cuda/cuda_sliding.cuh"
 
@@ -33,7 +34,8 @@ typedef struct cuda_numbers {
     cuda_fibres<real> *fibres; /* as, until the struct ends, of models with fibres or cut elements; else NULL */
     cuda_fibres<double> *fibres_looked_at;
     real *family, *mixfamily; /* or NULL */
-    cuda_slider *slider;      /* or NULL */
+    cuda_slider *slider;      /* or NULL, as is: */
+    double *position;         /* of nodes, for a probe */
 } cuda_numbers;
 
 /* Passes that follow each other, of those of `count` steps: what_of says what each does. */
@@ -86,7 +88,9 @@ struct tled_state {
     int64_t extras, forces;
     real *field[FIELDS_MOST]; /* of the problem's table, as layout_of says */
     real *spare;              /* as displacements are */
-    cuda_sliders sliders;     /* on the card */
+    cuda_sliders sliders;     /* on the card, as are: */
+    const double *position;   /* for a probe, or NULL */
+    const double *plane;      /* of a convex one */
     int64_t numbers;          /* of each of those that steps move: 3 x stride, or, where it marches, 4 x stride */
     uint64_t *message;        /* between tiles that are resident */
     uint32_t messages;        /* passes that they have sent them for */
@@ -218,6 +222,10 @@ static void list_problem(cuda_state *s, const cuda_numbers *numbers, card_layout
         card_layout_copy(l, &s->sliders.slider, numbers->slider, p->sliding->count);
         card_layout_copy(l, &s->sliders.ground.field, p->sliding->field, p->sliding->fields);
         card_layout_copy(l, &s->sliders.ground.value, p->sliding->ground.value, sliding_samples(p->sliding));
+    }
+    if (p->collider) {
+        card_layout_copy(l, &s->position, numbers->position, 3 * p->nodes);
+        card_layout_copy(l, &s->plane, p->collider->shape.plane, 4 * (int64_t)p->collider->shape.planes);
     }
     card_layout_add(l, &v->extra, s->extras);
     card_layout_add(l, &v->force_curve, s->forces);
@@ -396,7 +404,8 @@ static int make_numbers(cuda_numbers *n, const cuda_state *s, err *e)
             law[k] = (real)v->law.hourglass[k - coefficients];
     }
     put_mixtures(p, n->mixture);
-    if (p->sliding && !(n->slider = make_sliders(s, e)))
+    if ((p->sliding && !(n->slider = make_sliders(s, e))) ||
+        (p->collider && !(n->position = press_positions(p, s->tiles.node, e))))
         return -1;
     return make_fibres(n, s, e);
 }
@@ -449,6 +458,7 @@ out:
     free(numbers.family);
     free(numbers.mixfamily);
     free(numbers.slider);
+    free(numbers.position);
     return result;
 }
 

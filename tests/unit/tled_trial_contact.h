@@ -1,0 +1,75 @@
+/* Trials of nodes that slide on bone (tled/contact/sliding.h), and of a probe (tled/problem/collider.h), on a card that
+ * the processor plays. Included by test_tled_emulated.c.
+ */
+#ifndef SINEW_TLED_TRIAL_CONTACT_H
+#define SINEW_TLED_TRIAL_CONTACT_H
+
+#include "tled/cuda/cuda.h"
+#include "tled_trial.h"
+
+/* The CPU's bytes in bricks, which are not those that stay, as these take no step between passes; nearly, where it
+ * marches, with slits and cut elements too; and looks. */
+static inline void test_sliding(int64_t steps)
+{
+    const trial moved = {"sliding on a bone that moves", lump, 0, true, {0}, false};
+    const trial muscles = {"a muscle that slides", mixed_of(small), .5, false, {0}, false};
+    const trial rests = {"sliding, to rest", lump, 0, true, {0}, true};
+    answer with, without;
+    find(&without, &moved, &tled_cpu_double, steps);
+    in_sliding = true;
+    find(&with, &moved, &tled_cpu_double, steps);
+    ok(off(&with, &without) > 1e-4 && off(&with, &without) < INFINITY, "sliding matters: %.2g %s", off(&with, &without),
+       with.b.e.text);
+    answer_free(&with);
+    answer_free(&without);
+    try(&moved, &plain, &tled_cuda_single, &tled_cpu_single, steps, 0);
+    try(&moved, &staying, &tled_cuda_double, &tled_cpu_double, steps, 0);
+    try(&rests, &plain, &tled_cuda_single, &tled_cpu_single, steps, 0);
+    try(&muscles, &marching, &tled_cuda_single, &tled_cpu_double, steps, 1e-5);
+    in_slit = &slits[3];
+    try(&moved, &marching, &tled_cuda_single, &tled_cpu_double, steps, 1e-5);
+    in_slit = NULL;
+    in_cuts = true;
+    try(&moved, &marching, &tled_cuda_single, &tled_cpu_double, steps, 1e-5);
+    in_cuts = false;
+    put_in(&plain, 4, 4);
+    in_bent = true;
+    test_look(&lump, true, steps, &tled_cuda_single, "a look at nodes that slide", 1e-6);
+    put_in(&marching, 3, 2);
+    test_look(&lump, true, steps, &tled_cuda_single, "a look at them where it marches", 1e-6);
+    in_bent = false;
+    in_sliding = false;
+}
+
+/* A probe: in bricks and where it marches, nearly the CPU's numbers, as sums are others; beside nodes that slide too.
+ */
+static inline void test_pressing(int64_t steps)
+{
+    const probe ball = probe_sphere(.02), array = probe_linear(.03, .012, .003);
+    const trial pressed = {"a probe, a script", lump, 0, true, {0}, false};
+    const trial muscles = {"a probe on a muscle", mixed_of(small), .5, false, {0}, false};
+    const trial rests = {"a probe, to rest", lump, 0, true, {0}, true};
+    answer with, without;
+    find(&without, &pressed, &tled_cpu_double, steps);
+    in_pressing = &ball;
+    find(&with, &pressed, &tled_cpu_double, steps);
+    ok(off(&with, &without) > 1e-4 && off(&with, &without) < INFINITY, "a probe matters: %.2g %s", off(&with, &without),
+       with.b.e.text);
+    answer_free(&with);
+    answer_free(&without);
+    try(&pressed, &plain, &tled_cuda_double, &tled_cpu_double, steps, 1e-13);
+    try(&rests, &staying, &tled_cuda_single, &tled_cpu_single, steps, 1e-5);
+    try(&pressed, &marching, &tled_cuda_single, &tled_cpu_double, steps, 1e-5);
+    in_pressing = &array;
+    try(&muscles, &marching, &tled_cuda_single, &tled_cpu_double, steps, 1e-5);
+    in_sliding = true;
+    try(&pressed, &plain, &tled_cuda_double, &tled_cpu_double, steps, 1e-13);
+    in_sliding = false;
+    put_in(&plain, 4, 4);
+    in_bent = true;
+    test_look(&lump, true, steps, &tled_cuda_single, "a look at what a probe presses", 1e-6);
+    in_bent = false;
+    in_pressing = NULL;
+}
+
+#endif
