@@ -153,7 +153,7 @@ $(foreach source,$(patsubst variants_%,%,$(filter variants_%,$(.VARIABLES))),$(f
 # A tool: its main is the file of its name; what else its folder holds belongs to it.
 objects = $(foreach file,$(1),$(addprefix $(BUILD)/$(basename $(file)),$(or $(patsubst %,.%.o,$(variants_$(file))),.o)))
 VOXELISE_SRC := $(wildcard voxelise/*.c voxelise/surfaces/*.c)
-ATTACH_SRC := $(wildcard attach/*.c)
+ATTACH_SRC := $(wildcard attach/*.c attach/shape/*.c)
 BIND_MODULES := $(filter-out bind/bind.c bind/sinew-deform.c,$(wildcard bind/*.c))
 TLED_SRC := $(wildcard tled/muscle/*.c tled/problem/*.c tled/contact/*.c tled/cpu/*.c tled/run/*.c)
 MSDS_MESH_SRC := $(wildcard msds/mesh/*.c)

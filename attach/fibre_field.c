@@ -1,7 +1,7 @@
 #include "fibre_field.h"
 
+#include "attach/shape/laplace.h"
 #include "base/mem.h"
-#include "laplace.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,8 +1,8 @@
 #include "fibre_lines.h"
 
+#include "attach/shape/line_field.h"
 #include "base/mem.h"
 #include "base/near.h"
-#include "line_field.h"
 #include "mesh/lattice.h"
 #include "surface/scale.h"
 #include "surface/surface.h"

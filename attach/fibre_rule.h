@@ -5,11 +5,11 @@
 #ifndef SINEW_FIBRE_RULE_H
 #define SINEW_FIBRE_RULE_H
 
+#include "attach/shape/ring.h"
 #include "cli/opt.h"
 #include "fibre_field.h"
 #include "muscle.h"
 #include "muscle_shape.h"
-#include "ring.h"
 
 /* What a rule knows of a muscle. */
 typedef struct fibre_case {

@@ -1,10 +1,10 @@
 #include "film.h"
 
+#include "attach/shape/voxel_cut.h"
 #include "base/mem.h"
 #include "film_sides.h"
 #include "mesh/cut_moments.h"
 #include "mesh/held.h"
-#include "voxel_cut.h"
 
 #include <math.h>
 #include <stdlib.h>

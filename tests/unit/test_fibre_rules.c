@@ -1,9 +1,9 @@
 /* The rules that give fibres, against shapes made from equations: a ring, its halves, a cylinder, a fan; with their
  * surfaces in the model, and without; and directions between drawn lines.
  */
-// needs: attach/muscle.c attach/attachment.c attach/fibre_rule.c attach/fibre_field.c attach/laplace.c attach/ring.c
-// needs: attach/principal.c attach/muscle_shape.c attach/muscle_surface.c attach/line_field.c
-#include "attach/line_field.h"
+// needs: attach/muscle.c attach/attachment.c attach/fibre_rule.c attach/fibre_field.c attach/shape/laplace.c attach/shape/ring.c
+// needs: attach/shape/principal.c attach/muscle_shape.c attach/muscle_surface.c attach/shape/line_field.c
+#include "attach/shape/line_field.h"
 #include "attach/muscle.h"
 #include "surface/surface.h"
 

@@ -1,9 +1,9 @@
 /* Fibres by a potential: in a straight bar exactly along it; in a bent tube made from equations, its own axis; with
  * both ends, one or none attached, whatever the number of threads.
  */
-// needs: attach/muscle.c attach/attachment.c attach/fibre_rule.c attach/fibre_field.c attach/laplace.c
-// needs: attach/ring.c attach/principal.c attach/muscle_shape.c attach/muscle_surface.c
-#include "attach/laplace.h"
+// needs: attach/muscle.c attach/attachment.c attach/fibre_rule.c attach/fibre_field.c attach/shape/laplace.c
+// needs: attach/shape/ring.c attach/shape/principal.c attach/muscle_shape.c attach/muscle_surface.c
+#include "attach/shape/laplace.h"
 #include "attach/muscle.h"
 
 #include "block.h"

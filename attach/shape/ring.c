@@ -1,6 +1,6 @@
-#include "ring.h"
+#include "attach/shape/ring.h"
 
-#include "principal.h"
+#include "attach/shape/principal.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,4 +1,4 @@
-#include "voxel_cut.h"
+#include "attach/shape/voxel_cut.h"
 
 #include "surface/triangle.h"
 

@@ -1,4 +1,4 @@
-#include "laplace.h"
+#include "attach/shape/laplace.h"
 
 #include "base/mem.h"
 #include "mesh/lattice.h"

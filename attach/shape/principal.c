@@ -1,4 +1,4 @@
-#include "principal.h"
+#include "attach/shape/principal.h"
 
 #include <math.h>
 
