@@ -2,6 +2,7 @@
  * centres and fibres. W&M section 3, Algorithm 2.
  */
 #include "anchor.h"
+#include "bone_contact.h"
 #include "cli/tool.h"
 #include "fibre_lines.h"
 #include "fibre_rule.h"
@@ -20,7 +21,8 @@
 
 struct options {
     opt_common common;
-    opt_list rigid, part, fibre, lines_in, slide, slide_off;
+    const char *contact_file;
+    opt_list rigid, part, fibre, lines_in, slide, slide_off, contact;
     const char *rigid_file, *lines;
     double strictness;
     bool surface, report;
@@ -38,6 +40,10 @@ static const opt option_list[] = {
      "fix nodes this near to a surface, up to 1 [voxel sides; default 0.75]"},
     {OPT_ACTION, 0, "surface", NULL, OPT_FLAG, TO(surface), 0, 0, NULL, 0,
      "hold elements at the surface itself, by films of tissue, in place of nodes near it"},
+    {OPT_ACTION, 0, "contact", "SURFACE,...[:REGION]", OPT_LIST, TO(contact), 0, 0, NULL, OPT_NAMED,
+     "skin that bind --self-contact samples may not enter these, of the rigid surfaces"},
+    {OPT_INPUT, 0, "contact-file", "FILE.obj", OPT_TEXT, TO(contact_file), 0, 0, NULL, OPT_FILE,
+     "nor the surfaces of a file, which hold no node"},
     {OPT_ACTION, 0, "slide", "SURFACE,...[:REGION]", OPT_LIST, TO(slide), 0, 0, NULL, OPT_NAMED,
      "nodes held there slide on the bone; region: FILE.obj or X0,Y0,Z0,X1,Y1,Z1"},
     {OPT_ACTION, 0, "slide-off", "SURFACE,...[:REGION]", OPT_LIST, TO(slide_off), 0, 0, NULL, OPT_NAMED,
@@ -66,12 +72,13 @@ static const opt_tool table = {
 };
 
 /* Reads the OBJ into a model of its own, in metres. */
-static int read_rigid_file(const char *path, bool nameless, const model *m, model *file, notes *warnings, err *e)
+static int read_surfaces(const char *option, const char *path, bool nameless, const model *m, model *file,
+                         notes *warnings, err *e)
 {
     const char *unit_name = model_meta_of(m, "source.unit");
     num_unit unit = unit_name ? num_unit_of(unit_name) : 0, metre = num_unit_of("m");
     if (!unit)
-        return err_set(e, NULL, 0, "--rigid-file: the model's source.unit is %s; expected " NUM_UNITS,
+        return err_set(e, NULL, 0, "%s: the model's source.unit is %s; expected " NUM_UNITS, option,
                        unit_name ? unit_name : "not given");
     obj o = {0};
     char name[MODEL_NAME];
@@ -91,12 +98,22 @@ static int collect(const struct options *o, const model *m, model *file, rigid *
 {
     if (rigid_collect(r, m, &o->rigid, e))
         return -1;
-    if (o->rigid_file &&
-        (read_rigid_file(o->rigid_file, o->common.anonymous, m, file, warnings, e) || rigid_collect_all(r, file, e)))
+    if (o->rigid_file && (read_surfaces("--rigid-file", o->rigid_file, o->common.anonymous, m, file, warnings, e) ||
+                          rigid_collect_all(r, file, e)))
         return -1;
     if (!r->primitives)
         notes_add(warnings, "no surface of the model is rigid (skull*, bone*, rigid*); --rigid names others");
     return 0;
+}
+
+/* What holds no node and skin may not enter. */
+static int collect_loose(const struct options *o, const model *m, model *file, rigid *r, notes *warnings, err *e)
+{
+    return o->contact_file &&
+                   (read_surfaces("--contact-file", o->contact_file, o->common.anonymous, m, file, warnings, e) ||
+                    rigid_collect_all(r, file, e))
+               ? -1
+               : 0;
 }
 
 /* Whether all that was rigid was too far from the voxels. */
@@ -145,12 +162,12 @@ static int hold_surface(const tool *t, model *m, const rigid *r, notes *warnings
 }
 
 /* Nodes slide once all is known that they are rigid for. */
-static int let_slide(const struct options *o, const tool *t, model *m, const rigid *r, pool *threads, notes *warnings,
-                     err *e)
+static int let_slide(const struct options *o, const tool *t, model *m, const rigid *r, pool *threads,
+                     bone_fields *fields, notes *warnings, err *e)
 {
     const slide_options how = {&o->slide, &o->slide_off};
     slide_found found;
-    if (slide_make(m, r, &how, threads, &found, warnings, e))
+    if (slide_make(m, r, &how, threads, fields, &found, warnings, e))
         return -1;
     if (found.nodes)
         tool_say(t, "%lld nodes slide on bone, at most %.3g voxels away from it, by %lld distance field%s",
@@ -158,10 +175,28 @@ static int let_slide(const struct options *o, const tool *t, model *m, const rig
     return 0;
 }
 
+/* What skin may not enter, and what nodes slide on. */
+static int make_fields(const struct options *o, const tool *t, model *m, const rigid *r, const rigid *loose,
+                       pool *threads, notes *warnings, err *e)
+{
+    const bone_contact_options how = {&o->contact, &o->part, r, loose};
+    bone_fields fields = {0};
+    model_axis_drop(m, "field", warnings);
+    model_axis_drop(m, "distance", warnings);
+    int failed = bone_contact_make(m, &how, threads, &fields, warnings, e);
+    if (!failed && fields.count)
+        tool_say(t, "skin may not enter bone by %lld distance field%s", (long long)fields.count,
+                 fields.count == 1 ? "" : "s");
+    failed = failed || let_slide(o, t, m, r, threads, &fields, warnings, e) ||
+             (fields.count && bone_fields_write(m, &fields, model_find(m, "node.body") != NULL, e));
+    bone_fields_free(&fields);
+    return failed ? -1 : 0;
+}
+
 static int work(const struct options *o, const tool *t, model *m, notes *warnings, err *e)
 {
-    rigid r = {0};
-    model file = {0};
+    rigid r = {0}, loose = {0};
+    model file = {0}, loose_file = {0};
     muscles list = {0};
     pool *threads = NULL;
     int rc = -1, count = tool_threads(t, e);
@@ -169,10 +204,11 @@ static int work(const struct options *o, const tool *t, model *m, notes *warning
         return -1;
     film_drop(m, warnings);
     threads = pool_create(count, e);
-    if (!threads || collect(o, m, &file, &r, warnings, e) || anchor_nodes(m, &r, o->strictness, warnings, e) ||
-        part_make(m, &o->part, warnings, e) || muscle_make(m, &o->fibre, threads, &list, warnings, e) ||
+    if (!threads || collect(o, m, &file, &r, warnings, e) || collect_loose(o, m, &loose_file, &loose, warnings, e) ||
+        anchor_nodes(m, &r, o->strictness, warnings, e) || part_make(m, &o->part, &loose, warnings, e) ||
+        muscle_make(m, &o->fibre, threads, &list, warnings, e) ||
         (o->lines && fibre_lines_apply(m, o->lines, &o->lines_in, threads, e)) ||
-        let_slide(o, t, m, &r, threads, warnings, e) || (o->surface && hold_surface(t, m, &r, warnings, e)))
+        make_fields(o, t, m, &r, &loose, threads, warnings, e) || (o->surface && hold_surface(t, m, &r, warnings, e)))
         goto out;
     check_held(&r, warnings);
     say_rules(t, &list);
@@ -181,7 +217,9 @@ out:
     muscles_free(&list);
     pool_destroy(threads);
     rigid_free(&r);
+    rigid_free(&loose);
     model_free(&file);
+    model_free(&loose_file);
     return rc;
 }
 
@@ -193,6 +231,8 @@ static int check_options(const struct options *o, err *e)
         return err_usage(e, "--rigid-file -: standard input is the model's; expected the name of a file");
     if (o->lines && !strcmp(o->lines, "-"))
         return err_usage(e, "--fibre-lines -: standard input is the model's; expected the name of a file");
+    if (o->contact_file && !strcmp(o->contact_file, "-"))
+        return err_usage(e, "--contact-file -: standard input is the model's; expected the name of a file");
     if (o->surface && (o->slide.count || o->slide_off.count))
         return err_usage(e, "--surface with --slide: films hold all of what they touch; expected one of them");
     if (o->lines_in.count && !o->lines)

@@ -6,6 +6,7 @@
 #include "mesh/lattice.h"
 #include "surface/scale.h"
 #include "surface/solid.h"
+#include "surface/surface_region.h"
 #include "surface/triangle_tree.h"
 
 #include <inttypes.h>
@@ -29,9 +30,12 @@ typedef struct maker {
     const uint8_t *rigid;
     const int32_t *anchor;
     const model_array *anchors; /* their names */
+    const rigid *loose;
     int64_t nodes;
     double reach; /* m */
     char name[64][NAME_MOST + 1];
+    double loose_sum[64][3]; /* m: of the vertices of each part's loose surfaces' faces, and how many they are */
+    int64_t loose_count[64];
     int32_t bodies;
     claim *of; /* nodes */
 } maker;
@@ -92,13 +96,32 @@ static int claim_sure(maker *k, int32_t body, const uint8_t *mine, err *e)
     return shared ? refuse_shared(k, body, first, shared, e) : 0;
 }
 
+/* Adds up where the loose surfaces are that a name stands for. Returns whether there is any. */
+static bool take_loose(maker *k, const char *name)
+{
+    const int32_t b = k->bodies - 1;
+    bool any = false;
+    for (int64_t i = 0; i < k->loose->primitives; i++) {
+        const rigid_primitive *p = &k->loose->primitive[i];
+        if (!surface_in_group(k->loose->surface[p->surface].name, name))
+            continue;
+        any = true;
+        for (int64_t c = 0; c < p->corners; c++)
+            for (int a = 0; a < 3; a++)
+                k->loose_sum[b][a] += p->position[3 * (int64_t)p->vertex[c] + a];
+        k->loose_count[b] += p->corners;
+    }
+    return any;
+}
+
 /* Marks the nodes of the surfaces that a name stands for; it is an error where there is none. */
-static int mark_surfaces(const maker *k, const char *name, uint8_t *mine, err *e)
+static int mark_surfaces(maker *k, const char *name, uint8_t *mine, err *e)
 {
     const model_array *all = k->anchors;
     bool any = false;
     for (int64_t i = 0; i < all->rows; i++)
         any |= surface_in_group(all->str[i], name);
+    any |= take_loose(k, name);
     if (!any)
         return near_option(e, "--part", "rigid surface", name, (const char *const *)all->str,
                            all->rows < INT32_MAX ? (int)all->rows : INT32_MAX);
@@ -177,7 +200,8 @@ static int take_part(maker *k, const char *text, uint8_t *mine, err *e)
 
 /* ---- arrays */
 
-/* The mean of each body's nodes, and whether each has any. */
+/* The mean of each body's nodes, and whether each has any; of loose surfaces alone, that of the corners of their faces.
+ */
 static int find_centres(const maker *k, double *centre, err *e)
 {
     int64_t count[64] = {0};
@@ -190,6 +214,9 @@ static int find_centres(const maker *k, double *centre, err *e)
             centre[3 * b + a] += k->position[3 * n + a];
     }
     for (int32_t b = 0; b < k->bodies; b++) {
+        for (int a = 0; a < 3 && !count[b] && k->loose_count[b]; a++)
+            centre[3 * b + a] = k->loose_sum[b][a];
+        count[b] = count[b] ? count[b] : k->loose_count[b];
         if (!count[b])
             return err_set(
                 e, NULL, 0,
@@ -223,13 +250,13 @@ static int add_arrays(const maker *k, err *e)
 static int find_nodes(maker *k, err *e)
 {
     lattice l;
-    const model_array *position = model_need(k->m, "node.position", e), *rigid = model_need(k->m, "node.rigid", e);
+    const model_array *position = model_need(k->m, "node.position", e), *held = model_need(k->m, "node.rigid", e);
     const model_array *anchor = model_need(k->m, "node.anchor", e);
     k->anchors = model_need(k->m, "anchor.name", e);
-    if (!position || !rigid || !anchor || !k->anchors || lattice_of(k->m, &l, e))
+    if (!position || !held || !anchor || !k->anchors || lattice_of(k->m, &l, e))
         return -1;
     k->position = position->f64;
-    k->rigid = rigid->u8;
+    k->rigid = held->u8;
     k->anchor = anchor->i32;
     k->nodes = position->rows;
     k->reach =
@@ -240,7 +267,21 @@ static int find_nodes(maker *k, err *e)
     return k->of ? 0 : -1;
 }
 
-int part_make(model *m, const opt_list *parts, notes *warnings, err *e)
+int32_t part_of_surface(const opt_list *parts, const char *name)
+{
+    char one[MODEL_NAME];
+    for (int32_t i = 0; i < parts->count; i++) {
+        const char *p = strchr(parts->value[i], '=');
+        if (!p || path_is_obj(p + 1))
+            continue;
+        for (p++; surface_region_name(&p, one, sizeof one) > 0;)
+            if (surface_in_group(name, one))
+                return i;
+    }
+    return -1;
+}
+
+int part_make(model *m, const opt_list *parts, const rigid *loose, notes *warnings, err *e)
 {
     model_axis_drop(m, "body", warnings);
     if (!parts->count)
@@ -249,6 +290,7 @@ int part_make(model *m, const opt_list *parts, notes *warnings, err *e)
     if (!k)
         return -1;
     k->m = m;
+    k->loose = loose;
     int failed = find_nodes(k, e);
     uint8_t *mine = failed ? NULL : mem_array(k->nodes, 1, "the nodes", e);
     failed = !mine;

@@ -7,9 +7,8 @@
 #define SINEW_SLIDE_H
 
 #include "base/pool.h"
+#include "bone_field.h"
 #include "cli/opt.h"
-#include "model/model.h"
-#include "rigid.h"
 
 typedef struct slide_options {
     const opt_list *keep, *off; /* values of --slide, and of --slide-off: SURFACE,...[:REGION] */
@@ -20,11 +19,11 @@ typedef struct slide_found {
     double worst; /* in voxels: how far from the bone the furthest of them is */
 } slide_found;
 
-/* Makes the axes slide, field and distance in place of those that are there, and takes these nodes out of node.rigid,
- * node.anchor and node.body, which must be there; without any option only drops the axes. Coordinates of files and of
- * boxes are in the model's source.unit. -1 with e filled where an option is wrong, holds no node, or its surface does
- * not face one way. */
-int slide_make(model *m, const rigid *r, const slide_options *o, pool *threads, slide_found *found, notes *warnings,
-               err *e);
+/* Makes the axis slide in place of the one that is there, adds its fields to `fields`, and takes these nodes out of
+ * node.rigid, node.anchor and node.body, which must be there; without any option only drops the axis. Coordinates of
+ * files and of boxes are in the model's source.unit. -1 with e filled where an option is wrong, holds no node, or its
+ * surface does not face one way. */
+int slide_make(model *m, const rigid *r, const slide_options *o, pool *threads, bone_fields *fields, slide_found *found,
+               notes *warnings, err *e);
 
 #endif

@@ -138,6 +138,8 @@ typedef struct known {
       "1 = it may come off the bone, 0 = it keeps its distance from it")                                               \
     X("field.body", MODEL_I32, "@body", "field", 1, 1, 0, KNOWN_ANY, 0, 0, "attach",                                   \
       "rigid body that the field moves with, -1 = none")                                                               \
+    X("field.contact", MODEL_U8, "1", "field", 1, 1, 0, KNOWN_FROM, 0, 1, "attach",                                    \
+      "1 = samples of skin may not enter it, 0 = nodes slide on it")                                                   \
     X("field.first", MODEL_I32, "1", "field", 3, 3, 0, KNOWN_ANY, 0, 0, "attach",                                      \
       "corner of the lattice where its first sample is: i, j, k")                                                      \
     X("field.samples", MODEL_I32, "1", "field", 3, 3, 0, KNOWN_FROM, 2, INT32_MAX, "attach",                           \

@@ -144,7 +144,7 @@ static void say_run(measured *w, const bench *b, const char *what, int64_t steps
 }
 
 /* One round of what the machine can do, in the round of what is compared with it. */
-static void probe(measured *w, bench *b, const roof *r, int round)
+static void probe_machine(measured *w, bench *b, const roof *r, int round)
 {
 #ifdef SINEW_CUDA
     card_rates card;
@@ -202,7 +202,7 @@ static void measure_steps(measured *w, bench *b)
         steps *= 2;
     for (int i = 0; i < ROUNDS; i++) {
         w->took[i] = time_steps(b, w->device, state, &plan, steps);
-        probe(w, b, &r, i);
+        probe_machine(w, b, &r, i);
     }
     bench_must(w->device->snapshot(state, 0, &b->e), &b->e); /* what a run has: one frame at least */
     w->bytes = (double)w->device->bytes(state);

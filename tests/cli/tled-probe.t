@@ -96,6 +96,20 @@ check "poses in millimetres" tled-run --probe sphere:2cm --poses "$T/mm.tum" -n 
 is "$(grep -c 'the probe never comes near the tissue; expected poses in metres' "$T/stderr")" 1 "are said to be far away"
 check "poses in metres" tled-run --probe sphere:2cm --poses "$T/press.tum" -n 5 -o /dev/null <"$T/block.sinew"
 is "$(grep -c 'never comes near' "$T/stderr")" 0 "have no such word"
+# Hertz: a ball of 12 cm pressed .3 mm into a bonded layer of 2 cm that is 20 contact radii wide, a quarter of it.
+hertz() { # WHAT OPTION...
+    what=$1
+    shift
+    awk -v W=60 -v H=20 -v R=120 -v D=.3 -v what="$what" "$@" -f tests/cli/hertz.awk
+}
+hertz layer >"$T/layer.obj"
+hertz poses >"$T/layer.tum"
+hertz script -v still=1 >"$T/layer.script"
+voxelise -q --unit mm -s 2 "$T/layer.obj" | attach -q |
+    tled-run -q -d cpu --text --precision single -m tissue.nu=.45 --script "$T/layer.script" --probe sphere:120mm --poses "$T/layer.tum" --repulsion 4 --damping 200 -t .13 >"$T/layer" 2>/dev/null
+force "$T/layer" >"$T/force"
+read -r newton torque <"$T/force"
+near "$(awk -v f="$newton" -v want="$(hertz force -v E=3000 -v nu=.45)" 'BEGIN { print f / want }')" 1 .03 "a ball presses as the bonded layer's formula says"
 fails 2 "poses without a probe" 'expected both' tled-run --poses "$T/press.tum" -t .1 <"$T/block.sinew"
 { cat "$T/inside.tum"; echo 'method fem'; } >"$T/method.tum"
 fails 1 "a change of method" 'method.tum:2: .*expected poses alone' tled-run --probe sphere:2cm --poses "$T/method.tum" -t .1 <"$T/block.sinew"

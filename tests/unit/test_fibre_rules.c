@@ -1,10 +1,11 @@
 /* The rules that give fibres, against shapes made from equations: a ring, its halves, a cylinder, a fan; with their
  * surfaces in the model, and without; and directions between drawn lines.
  */
-// needs: attach/muscle.c attach/attachment.c attach/fibre_rule.c attach/fibre_field.c attach/shape/laplace.c attach/shape/ring.c
+// needs: attach/muscle.c attach/attachment.c attach/fibre_rule.c attach/fibre_field.c
+// needs: attach/shape/laplace.c attach/shape/ring.c
 // needs: attach/shape/principal.c attach/muscle_shape.c attach/muscle_surface.c attach/shape/line_field.c
-#include "attach/shape/line_field.h"
 #include "attach/muscle.h"
+#include "attach/shape/line_field.h"
 #include "surface/surface.h"
 
 #include "block.h"

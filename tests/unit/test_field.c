@@ -3,8 +3,8 @@
  */
 // needs: attach/muscle.c attach/attachment.c attach/fibre_rule.c attach/fibre_field.c attach/shape/laplace.c
 // needs: attach/shape/ring.c attach/shape/principal.c attach/muscle_shape.c attach/muscle_surface.c
-#include "attach/shape/laplace.h"
 #include "attach/muscle.h"
+#include "attach/shape/laplace.h"
 
 #include "block.h"
 

@@ -1,6 +1,7 @@
 /* Contraction centres, fibres and axes against sums done by hand; and which surfaces are rigid, by name.
  */
-// needs: attach/rigid.c attach/muscle.c attach/attachment.c attach/fibre_rule.c attach/fibre_field.c attach/shape/laplace.c
+// needs: attach/rigid.c attach/muscle.c attach/attachment.c attach/fibre_rule.c
+// needs: attach/fibre_field.c attach/shape/laplace.c
 // needs: attach/shape/ring.c attach/shape/principal.c attach/muscle_shape.c attach/muscle_surface.c
 #include "attach/muscle.h"
 #include "attach/rigid.h"

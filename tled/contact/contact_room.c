@@ -24,6 +24,9 @@ void self_contact_room_free(self_contact_work *w)
     free(w->near);
     free(w->until);
     free(w->touch);
+    free(w->solid);
+    free(w->bone_until);
+    free(w->bone_touch);
     free(w->start);
     free(w->of);
     free(w->cell);
@@ -60,7 +63,10 @@ self_contact_work *contact_room_make(const tled_problem *p, const self_contact *
         (w->candidate = mem_array(c->elements, CANDIDATES * sizeof *w->candidate, what, e)) &&
         (w->near = mem_array(c->samples, sizeof *w->near, what, e)) &&
         (w->until = mem_array(c->samples, sizeof *w->until, what, e)) &&
-        (w->touch = mem_array(c->samples, sizeof *w->touch, what, e)) &&
+        (w->touch = mem_array(c->samples, 2 * sizeof *w->touch, what, e)) &&
+        (w->solid = mem_array(c->solids, sizeof *w->solid, what, e)) &&
+        (w->bone_until = mem_array(c->solids * c->samples, sizeof *w->bone_until, what, e)) &&
+        (w->bone_touch = mem_array(c->solids ? c->samples : 0, sizeof *w->bone_touch, what, e)) &&
         (w->start = mem_array(w->cells + 1, sizeof *w->start, what, e)) &&
         (w->of = mem_array(c->elements, sizeof *w->of, what, e)) &&
         (w->cell = mem_array(c->elements, sizeof *w->cell, what, e)) &&
@@ -82,7 +88,8 @@ int64_t self_contact_bytes(const self_contact_work *w)
         return 0;
     const self_contact *c = w->c;
     return c->nodes * (16 * (int64_t)sizeof(double) + (int64_t)sizeof(int32_t)) +
-           c->samples * ((int64_t)sizeof(touch) + 8 + (int64_t)sizeof(int32_t)) +
+           c->samples *
+               ((2 + (c->solids > 0)) * (int64_t)sizeof(touch) + 8 * (1 + c->solids) + (int64_t)sizeof(int32_t)) +
            c->elements * (15 * (int64_t)sizeof(double) + (CANDIDATES + 3) * (int64_t)sizeof(int32_t)) +
            (w->cells + 1) * (int64_t)sizeof(int32_t);
 }

@@ -8,16 +8,25 @@
 
 enum { CANDIDATES = 64 }; /* of an element: those that its samples may be in */
 
-/* A sample in an element that it is no part of. */
+/* A sample in an element that it is no part of, or in bone. */
 typedef struct touch {
-    int32_t sample, element; /* rows */
+    int32_t sample, element; /* rows; element: -1 in bone */
+    int sides;               /* that move: the sample's, and the place's, unless that is bone; 0: it touches nothing */
+    double carried[3];       /* m: by which bone moves there in the step; else 0 */
     double share[8];         /* of the place's nodes */
     double normal[3], off;   /* off: g - g0, m */
-    double part[2];          /* of the sample's side and of the place's: they sum to 1 */
+    double part[2];          /* of the sides: they sum to 1 */
     double width;            /* no less than the sum of what units of lambda at all contacts move this one by */
     double fresh, lambda;    /* beta; m */
     double rubbed[3];        /* m/s: by friction */
 } touch;
+
+/* Bone that skin may not enter. */
+typedef struct contact_solid {
+    sliding_bone was, is; /* at the beginning and the end of the step */
+    double drift;         /* m: how far its fastest corner has come since the start, step by step */
+    bool is_placed;
+} contact_solid;
 
 struct self_contact_work {
     const tled_problem *p;
@@ -38,9 +47,12 @@ struct self_contact_work {
     int64_t nears;
     double drift;  /* m: how far the fastest node has come since the start, step by step */
     double *until; /* samples, m: by what drift one may touch */
-    touch
-        *touch; /* samples: first one for each of near, of element -1 where that touches nothing; then those that do */
+    touch *touch;  /* samples x 2: first one for each of near, of element -1 where that touches nothing; then those that
+                      do, and those in bone */
     int64_t touches;
+    contact_solid *solid; /* solids */
+    double *bone_until;   /* solids x samples: as until */
+    touch *bone_touch;    /* samples: what touches bone */
     /* The table: elements by the cells that their middles are in. */
     int64_t cells; /* a power of two */
     int32_t *start, *of, *cell;

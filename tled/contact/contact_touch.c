@@ -22,8 +22,7 @@ static double certainty(const self_contact_work *w, int32_t element, const doubl
     return slope < 1 ? slope * slope : 1;
 }
 
-/* The skin's normal at a sample, where it is: 0 where it has none. Returns its certainty. */
-static double normal_of(const self_contact_work *w, int64_t sample, double normal[3])
+double contact_normal(const self_contact_work *w, int64_t sample, double normal[3])
 {
     const int32_t element = w->c->sample_element[sample];
     const deformed_map d = contact_map(w, element);
@@ -101,6 +100,7 @@ static bool find_touch(const self_contact_work *w, int64_t sample, touch *t, dou
     double x[3], place[3], own[3], dot = 0;
     contact_place(w, sample, x);
     t->sample = (int32_t)sample;
+    t->sides = 2;
     t->element = find_element(w, sample, x, place);
     *clear = CONTACT_MARGIN * c->shortest;
     if (t->element < 0)
@@ -116,7 +116,7 @@ static bool find_touch(const self_contact_work *w, int64_t sample, touch *t, dou
     *clear = fmin(fmax(t->off, 0), *clear);
     if (!(t->off < 0) || t->off < -(near ? near_deep : most_deep) * c->shortest)
         return false;
-    const double sure = normal_of(w, sample, own), other = certainty(w, t->element, place);
+    const double sure = contact_normal(w, sample, own), other = certainty(w, t->element, place);
     for (int a = 0; a < 3; a++)
         dot += own[a] * t->normal[a];
     turn_normal(t->normal, other, own, sure);

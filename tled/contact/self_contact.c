@@ -2,6 +2,8 @@
 
 #include "base/mem.h"
 #include "mesh/weights.h"
+#include "tled/contact/contact_bone.h"
+#include "tled/contact/contact_near.h"
 #include "tled/contact/contact_room.h"
 #include "tled/contact/contact_touch.h"
 
@@ -182,13 +184,17 @@ void self_contact_free(self_contact *c)
     free(c->element);
     free(c->distance);
     free(c->rest);
+    free(c->solid);
+    free(c->bone_rest);
     *c = (self_contact){.samples = 0};
 }
 
 /* ---- impulses */
 
-/* The 16 nodes of a contact: their rows and shares, above 0 the sample's, below 0 the place's. */
+/* The nodes of a contact, 8 of each side that moves: their rows and shares, above 0 the sample's, below 0 the place's.
+ */
 typedef struct lever {
+    int sides;
     const int32_t *node[2];
     const double *share[2];
 } lever;
@@ -196,7 +202,9 @@ typedef struct lever {
 static lever lever_of(const self_contact_work *w, const touch *t)
 {
     const self_contact *c = w->c;
-    return (lever){{c->element + 8 * (int64_t)c->sample_element[t->sample], c->element + 8 * (int64_t)t->element},
+    return (lever){t->sides,
+                   {c->element + 8 * (int64_t)c->sample_element[t->sample],
+                    t->sides == 2 ? c->element + 8 * (int64_t)t->element : NULL},
                    {c->share + 8 * (int64_t)t->sample, t->share}};
 }
 
@@ -211,14 +219,15 @@ static void relative(const lever *l, const double *value, double to[3])
     to[0] = to[1] = to[2] = 0;
     for (int k = 0; k < 8; k++)
         for (int a = 0; a < 3; a++)
-            to[a] += l->share[0][k] * value[3 * (int64_t)l->node[0][k] + a] -
-                     l->share[1][k] * value[3 * (int64_t)l->node[1][k] + a];
+            to[a] += l->sides == 2 ? l->share[0][k] * value[3 * (int64_t)l->node[0][k] + a] -
+                                         l->share[1][k] * value[3 * (int64_t)l->node[1][k] + a]
+                                   : l->share[0][k] * value[3 * (int64_t)l->node[0][k] + a];
 }
 
 /* Adds what `way` moves both sides by: each node by its share and its side's part. */
 static void push(const self_contact_work *w, const touch *t, const lever *l, const double way[3], double *to)
 {
-    for (int side = 0; side < 2; side++)
+    for (int side = 0; side < l->sides; side++)
         for (int k = 0; k < 8; k++) {
             const int32_t n = l->node[side][k];
             const double share = (side ? -1 : 1) * t->part[side] * l->share[side][k];
@@ -232,11 +241,11 @@ static void find_parts(const self_contact_work *w, touch *t)
 {
     const lever l = lever_of(w, t);
     double mass[2] = {0, 0};
-    for (int side = 0; side < 2; side++)
+    for (int side = 0; side < l.sides; side++)
         for (int k = 0; k < 8; k++)
             mass[side] += l.share[side][k] * w->p->mass[w->c->node[l.node[side][k]]];
     const double all = mass[0] + mass[1];
-    t->part[0] = mass[0] > 0 && mass[1] > 0 ? mass[1] / all : .5;
+    t->part[0] = t->sides == 1 ? 1 : mass[0] > 0 && mass[1] > 0 ? mass[1] / all : .5;
     t->part[1] = 1 - t->part[0];
 }
 
@@ -245,7 +254,7 @@ static void sum_shares(self_contact_work *w)
 {
     for (int64_t i = 0; i < w->touches; i++) {
         const lever l = lever_of(w, &w->touch[i]);
-        for (int side = 0; side < 2; side++)
+        for (int side = 0; side < l.sides; side++)
             for (int k = 0; k < 8; k++) {
                 double *sum = &w->sum[l.node[side][k]];
                 if (*sum == 0)
@@ -259,7 +268,7 @@ static void find_width(const self_contact_work *w, touch *t)
 {
     const lever l = lever_of(w, t);
     t->width = 0;
-    for (int side = 0; side < 2; side++)
+    for (int side = 0; side < l.sides; side++)
         for (int k = 0; k < 8; k++)
             for (int a = 0; a < 3; a++)
                 t->width += is_free(w, l.node[side][k], a)
@@ -278,7 +287,7 @@ static void begin_touch(const self_contact_work *w, touch *t, double dt)
     double speed[3];
     find_width(w, t);
     relative(&l, w->v, speed);
-    const double came = fmin(fmax(-dot_of(speed, t->normal) * dt, 0), -t->off);
+    const double came = fmin(fmax(dot_of(t->carried, t->normal) - dot_of(speed, t->normal) * dt, 0), -t->off);
     t->off = fmax(t->off, -came - recovered * w->c->shortest);
     t->fresh = came / -t->off;
     t->lambda = 0;
@@ -340,7 +349,7 @@ static void rub_touch(const self_contact_work *w, touch *t, double dt)
     relative(&l, w->v, slip);
     relative(&l, w->change, more);
     for (int a = 0; a < 3; a++)
-        slip[a] += more[a];
+        slip[a] += more[a] - t->carried[a] / dt;
     const double along = dot_of(slip, t->normal);
     for (int a = 0; a < 3; a++)
         t->rubbed[a] -= (slip[a] - along * t->normal[a]) / t->width;
@@ -369,9 +378,11 @@ static void rub(self_contact_work *w, double dt)
         }
 }
 
-int32_t self_contact_find(self_contact_work *w, pool *threads, const int32_t **rows)
+int32_t self_contact_find(self_contact_work *w, pool *threads, const double *was, const double *is,
+                          const int32_t **rows)
 {
     contact_touches(w, threads);
+    contact_bones(w, threads, was, is);
     for (int32_t k = 0; k < w->abouts; k++)
         w->sum[w->about[k]] = 0;
     w->abouts = 0;
@@ -394,6 +405,25 @@ void self_contact_solve(self_contact_work *w, double dt)
 
 /* ---- making it */
 
+/* And in bone, of each on its own. */
+static void find_bone_rest(self_contact *c, const self_contact_work *w)
+{
+    for (int32_t k = 0; k < c->solids; k++)
+        for (int64_t i = 0; i < c->samples; i++) {
+            double x[3], slope[3];
+            contact_place(w, i, x);
+            if (sliding_beyond(&c->bones->ground, c->solid[k], x))
+                continue;
+            const double phi = sliding_distance(&c->bones->ground, c->solid[k], x, slope);
+            const double depth = -phi / fmax(sliding_length(slope), SLIDING_SLOPE);
+            if (!(depth > 0))
+                continue;
+            c->bone_rest[k * c->samples + i] = -depth;
+            c->deep_in_bone += depth > SELF_CONTACT_DEEP * c->shortest;
+            c->deepest_in_bone = fmax(c->deepest_in_bone, depth);
+        }
+}
+
 /* How deep samples are at rest. */
 static int find_rest(self_contact *c, const tled_problem *p, pool *threads, err *e)
 {
@@ -407,11 +437,27 @@ static int find_rest(self_contact *c, const tled_problem *p, pool *threads, err 
         c->deep += depth > SELF_CONTACT_DEEP * c->shortest;
         c->deepest = fmax(c->deepest, depth);
     }
+    find_bone_rest(c, w);
     self_contact_room_free(w);
     return 0;
 }
 
-int self_contact_make(self_contact *c, tled_problem *p, const model *m, double friction, pool *threads, err *e)
+/* The fields that skin may not enter. */
+static int find_solids(self_contact *c, sliding *bones, err *e)
+{
+    c->bones = bones;
+    for (int64_t f = 0; bones->touches && f < bones->fields; f++)
+        c->solids += bones->touches[f] != 0;
+    c->solid = mem_array(c->solids, sizeof *c->solid, "the bones", e);
+    c->bone_rest = c->solid ? mem_array(c->solids * c->samples, sizeof *c->bone_rest, "the bones", e) : NULL;
+    for (int32_t f = 0, k = 0; c->bone_rest && k < c->solids; f++)
+        if (bones->touches[f])
+            c->solid[k++] = f;
+    return c->bone_rest ? 0 : -1;
+}
+
+int self_contact_make(self_contact *c, tled_problem *p, const model *m, sliding *bones, double friction, pool *threads,
+                      err *e)
 {
     reader r = {.c = c, .p = p, .e = e};
     *c = (self_contact){.friction = friction};
@@ -422,7 +468,7 @@ int self_contact_make(self_contact *c, tled_problem *p, const model *m, double f
     if (read_all(&r, m))
         return -1;
     c->shortest = fmin(p->side[0], fmin(p->side[1], p->side[2]));
-    if (find_rest(c, p, threads, e))
+    if (find_solids(c, bones, e) || find_rest(c, p, threads, e))
         return -1;
     p->self_contact = c->samples ? c : NULL;
     return 0;

@@ -17,6 +17,8 @@
  * al. 2012, ACM Transactions on Graphics 31:105). A sample and an element that have a node in common are one piece and
  * do not touch.
  *
+ * Bone that skin may not enter (contact_bone.h) is a side that nothing moves: the sample's takes it all.
+ *
  * A table of where elements are, in cells of space, is made anew when any node has moved by more than its margin; which
  * contacts there are does not depend on when. All in double, in one order: the same bytes for any number of threads.
  * The creator owns a self_contact; it borrows the model.
@@ -26,6 +28,7 @@
 
 #include "base/pool.h"
 #include "tled/contact/deformed_place.h"
+#include "tled/contact/sliding.h"
 #include "tled/problem/state.h"
 
 #define SELF_CONTACT_DEEP .1 /* of a shortest side: deeper than that at rest is worth a word */
@@ -40,14 +43,21 @@ typedef struct self_contact {
     double *rest;                     /* samples, m: g0, at most 0 */
     int32_t *ring_start, *ring;       /* elements + 1; nodes of the elements about each, ascending */
     double shortest;                  /* m: the shortest side of an element */
-    double friction;                  /* mu */
-    int64_t deep;                     /* samples that are deeper than SELF_CONTACT_DEEP of that at rest */
-    double deepest;                   /* m: the most */
+    struct sliding *bones;            /* whose fields: */
+    int32_t *solid;                   /* solids: those that skin may not enter */
+    int32_t solids;
+    double *bone_rest;    /* solids x samples, m: as rest */
+    double friction;      /* mu */
+    int64_t deep;         /* samples that are deeper than SELF_CONTACT_DEEP of that at rest */
+    double deepest;       /* m: the most */
+    int64_t deep_in_bone; /* and in bone */
+    double deepest_in_bone;
 } self_contact;
 
-/* Makes c, of 0 samples where the model has none; it is the problem's from then on. -1 with e filled, and c to be freed
- * all the same. */
-int self_contact_make(self_contact *c, tled_problem *p, const model *m, double friction, pool *threads, err *e);
+/* Makes c, of 0 samples where the model has none; it is the problem's from then on. bones: of the model, with their
+ * fields. -1 with e filled, and c to be freed all the same. */
+int self_contact_make(self_contact *c, tled_problem *p, const model *m, sliding *bones, double friction, pool *threads,
+                      err *e);
 void self_contact_free(self_contact *c);
 
 /* What a step takes. The creator owns it. */
@@ -61,8 +71,10 @@ int64_t self_contact_bytes(const self_contact_work *w);
 /* Displacements of the nodes (nodes x 3), the caller's to fill after the predictor. */
 double *self_contact_displacement(self_contact_work *w);
 
-/* Finds what touches there. Returns how many nodes are about that; row k of them is node rows[k] of c->node. */
-int32_t self_contact_find(self_contact_work *w, pool *threads, const int32_t **rows);
+/* Finds what touches there, in a step from the curves' values `was` to `is`. Returns how many nodes are about that; row
+ * k of them is node rows[k] of c->node. */
+int32_t self_contact_find(self_contact_work *w, pool *threads, const double *was, const double *is,
+                          const int32_t **rows);
 
 /* Velocities of the nodes (nodes x 3): of those about contacts the caller's to fill. */
 double *self_contact_velocity(self_contact_work *w);

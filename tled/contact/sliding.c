@@ -14,7 +14,7 @@ static int read_fields(sliding *s, const model *m, const lattice *l, err *e)
 {
     const model_array *first = model_need(m, "field.first", e), *samples = model_need(m, "field.samples", e);
     const model_array *value = model_need(m, "distance.value", e), *body = model_find(m, "field.body");
-    const model_array *name = model_find(m, "body.name");
+    const model_array *name = model_find(m, "body.name"), *touches = model_find(m, "field.contact");
     int64_t count = 0;
     if (!first || !samples || !value)
         return -1;
@@ -41,6 +41,7 @@ static int read_fields(sliding *s, const model *m, const lattice *l, err *e)
                        (long long)value->rows, (long long)count);
     s->ground.value = value->f32;
     s->ground.field = s->field;
+    s->touches = touches ? touches->u8 : NULL;
     s->body = body && name ? body->i32 : NULL;
     s->name = s->body ? name->str : NULL;
     return s->field ? 0 : -1;
@@ -91,13 +92,15 @@ int sliding_make(sliding *s, tled_problem *p, const model *m, double friction, e
     lattice l;
     double slope[3];
     *s = (sliding){.ground.friction = friction};
-    if (!model_find(m, "slide.node"))
+    const bool slides = model_find(m, "slide.node");
+    if (!slides && !model_find(m, "field.contact"))
         return 0;
-    if (p->conforming)
+    if (slides && p->conforming)
         return err_set(e, NULL, 0, "nodes slide on bone in a model without a lattice; expected one of voxels");
-    if (p->films)
+    if (slides && p->films)
         return err_set(e, NULL, 0, "nodes slide on bone that holds the tissue by films; expected one of both");
-    if (lattice_of(m, &l, e) || read_fields(s, m, &l, e) || read_nodes(s, m, p->nodes, e) || check_held(s, m, e))
+    if (lattice_of(m, &l, e) || read_fields(s, m, &l, e) ||
+        (slides && (read_nodes(s, m, p->nodes, e) || check_held(s, m, e))))
         return -1;
     memcpy(s->ground.spacing, l.spacing, sizeof l.spacing);
     for (int a = 0; a < 3; a++)

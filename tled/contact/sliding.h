@@ -28,13 +28,14 @@ typedef struct sliding {
     int32_t *row;         /* of the model's nodes: which slides, or -1 */
     sliding_field *field;
     int64_t fields;
-    const int32_t *body; /* fields: the body that each moves with, or -1; NULL: none moves */
-    char *const *name;   /* bodies */
+    const uint8_t *touches; /* fields: whether samples of skin may not enter it (self_contact.h); NULL: of none */
+    const int32_t *body;    /* fields: the body that each moves with, or -1; NULL: none moves */
+    char *const *name;      /* bodies */
     sliding_ground ground;
 } sliding;
 
-/* Makes s, and s->fields = 0 where the model has no nodes that slide; it is the problem's from then on. -1 with e
- * filled, and s to be freed all the same. */
+/* Makes s, of no nodes or no fields where the model has none; it is the problem's from then on where nodes slide. -1
+ * with e filled, and s to be freed all the same. */
 int sliding_make(sliding *s, tled_problem *p, const model *m, double friction, err *e);
 void sliding_free(sliding *s);
 

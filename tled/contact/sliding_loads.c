@@ -2,7 +2,7 @@
 
 #include "base/mem.h"
 #include "probe/pose_fit.h"
-#include "tled/contact/sliding.h"
+#include "tled/contact/self_contact.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -143,9 +143,15 @@ static int add_loads(const tled_problem *p, pool *threads, const bodies_state *n
     return failed;
 }
 
+/* The fields of nodes that slide, or else those that skin may not enter. */
+static const sliding *bones_of(const tled_problem *p)
+{
+    return p->sliding ? p->sliding : p->self_contact ? p->self_contact->bones : NULL;
+}
+
 int sliding_add(const tled_problem *p, pool *threads, const bodies_state *now, frame *f, err *e)
 {
-    const sliding *s = p->sliding;
+    const sliding *s = bones_of(p);
     const model_array *at = frame_find(f, "body.pose"), *force = frame_find(f, "body.force");
     const model_array *torque = frame_find(f, "body.torque");
     if (!s || !s->body || !at || !force || !torque)

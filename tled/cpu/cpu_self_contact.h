@@ -19,7 +19,7 @@ static void touch_skin(cpu_state *s)
     const int32_t *node = s->p->self_contact->node, *row;
     double *u = self_contact_displacement(s->skin), *v = self_contact_velocity(s->skin);
     pool_run(s->threads, s->p->self_contact->nodes, SELF_CHUNK, skin_in, s);
-    const int32_t count = self_contact_find(s->skin, s->threads, &row);
+    const int32_t count = self_contact_find(s->skin, s->threads, s->now, s->next, &row);
     for (int64_t k = 0; k < 3 * (int64_t)count; k++)
         v[3 * (int64_t)row[k / 3] + k % 3] =
             (double)s->field[TLED_VELOCITY][k % 3 * s->rows.nodes + s->rows.place[node[row[k / 3]]]];

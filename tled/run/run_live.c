@@ -1,5 +1,5 @@
 #include "base/num.h"
-#include "tled/contact/sliding.h"
+#include "tled/contact/self_contact.h"
 #include "tled/run/run_parts.h"
 #include "tled/run/timeline.h"
 
@@ -76,6 +76,8 @@ static int take_over(run *n)
         return -1;
     if (n->live->p->sliding)
         sliding_follow(n->live->p->sliding, n->live->p->script);
+    if (n->live->p->self_contact && n->live->p->self_contact->bones)
+        sliding_follow(n->live->p->self_contact->bones, n->live->p->script);
     const int more = n->r->device->reload ? n->r->device->reload(n->state, n->e) : 1;
     return more < 0 || (more && make_again(n, AS_IT_IS)) || run_monitor(n) ? -1 : 0;
 }

@@ -415,6 +415,14 @@ static int check_skin(session *s, err *e)
             "%lld of %lld samples of skin are deeper in other tissue at rest than %g of a voxel, the deepest %.4g "
             "mm: they touch where they are deeper than that",
             (long long)c->deep, (long long)c->samples, SELF_CONTACT_DEEP, 1e3 * c->deepest);
+    if (c && c->deep_in_bone)
+        notes_add(&s->warnings,
+                  "%lld of %lld samples of skin are deeper in bone at rest than %g of a voxel, the deepest %.4g mm: "
+                  "they may stay as deep as that",
+                  (long long)c->deep_in_bone, (long long)c->samples, SELF_CONTACT_DEEP, 1e3 * c->deepest_in_bone);
+    if (!c && s->sliding.touches)
+        notes_add(&s->warnings, "there is bone that skin may not enter (attach --contact), but no samples of skin; "
+                                "expected some (bind --self-contact)");
     return 0;
 }
 
@@ -425,7 +433,7 @@ static int prepare(session *s, const struct options *o, char *device, size_t siz
     if (change_materials(s, o, e) || read_collider(s, o, e) || make_script(s, o, e) ||
         tled_problem_make(&s->problem, &s->m, &s->script, o->control, e) || say_control(&s->m, o->control, e) ||
         sliding_make(&s->sliding, &s->problem, &s->m, o->friction, e) ||
-        self_contact_make(&s->skin, &s->problem, &s->m, o->friction, NULL, e) || check_friction(s, o, e) ||
+        self_contact_make(&s->skin, &s->problem, &s->m, &s->sliding, o->friction, NULL, e) || check_friction(s, o, e) ||
         check_skin(s, e) || support_of(&s->problem, &s->support, e) ||
         support_check(&s->support, &s->problem, s->run.rest >= 0, s->collider.poses, &s->warnings, e))
         return -1;

@@ -26,6 +26,9 @@ void words_start(const session *s, const char *device, const struct options *o)
     if (p->self_contact)
         tool_say(s->t, "%lld samples of skin may touch %lld elements, friction %g", (long long)p->self_contact->samples,
                  (long long)p->self_contact->elements, p->self_contact->friction);
+    if (p->self_contact && p->self_contact->solids)
+        tool_say(s->t, "and %d distance field%s of bone", (int)p->self_contact->solids,
+                 p->self_contact->solids == 1 ? "" : "s");
     const int64_t least = cut_least(p);
     if (least)
         tool_say(s->t, "%lld cut element%s, of which less than %g is enclosed, the mass is that of %g",
