@@ -364,7 +364,7 @@ static int bind_carried(const tool *t, target *to, model *m, const struct option
 static int touch_itself(const tool *t, const target *to, model *m, const struct options *o, int threads,
                         notes *warnings, err *e)
 {
-    touch_skin_options with = {.regions = &o->self_contact};
+    touch_skin_options with = {.regions = &o->self_contact, .blended = to->blended};
     touch_found found;
     if (!o->self_contact.count)
         return 0;

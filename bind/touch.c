@@ -5,13 +5,15 @@
 #include <math.h>
 #include <string.h>
 
-static int write_samples(model *m, const touch_depth *d, int64_t samples, err *e)
+static int write_samples(model *m, const touch_depth *d, int64_t samples, bool blended, err *e)
 {
     if (model_axis_add(m, "contact", samples, e) || !model_add(m, "contact.element", e) ||
-        !model_add(m, "contact.weight", e))
+        !model_add(m, "contact.weight", e) || (blended && !model_add(m, "contact.blended", e)))
         return -1;
     memcpy(model_find(m, "contact.element")->i32, d->element, (size_t)samples * sizeof *d->element);
     memcpy(model_find(m, "contact.weight")->f64, d->weight, 3 * (size_t)samples * sizeof *d->weight);
+    if (blended)
+        memset(model_find(m, "contact.blended")->u8, 1, (size_t)samples);
     return 0;
 }
 
@@ -39,7 +41,7 @@ int touch_make(model *m, const side *sides, const touch_skin_options *o, int thr
     *found = (touch_found){skin.samples, depth.nodes, depth.worst};
     model_axis_drop(m, "contact", warnings);
     model_axis_drop(m, "skin", warnings);
-    failed = failed || write_samples(m, &depth, skin.samples, e) || write_nodes(m, &depth, e);
+    failed = failed || write_samples(m, &depth, skin.samples, o->blended, e) || write_nodes(m, &depth, e);
     touch_skin_free(&skin);
     touch_depth_free(&depth);
     return failed ? -1 : 0;

@@ -25,6 +25,7 @@ typedef struct touch_skin {
 typedef struct touch_skin_options {
     const opt_list *regions; /* SURFACE,...[:REGION], or auto */
     double apart;            /* m */
+    bool blended;            /* samples move as blended vertices do (mesh/motion.h) */
 } touch_skin_options;
 
 /* Surfaces are the model's, by their names or their groups'; coordinates of regions are in its source.unit. -1 with e

@@ -57,6 +57,10 @@ static void say_numbers(out *o, const check_result *r, const char *unit)
     count(o, "polygons given again", r->repeated);
     count(o, "triangles without area", r->degenerate);
     count(o, "pairs of triangles that cross", r->met);
+    if (r->met) {
+        line(o, "deepest of these");
+        out_format(o, "%.3g %s\n", r->deepest, unit);
+    }
     if (!isnan(r->thin)) {
         line(o, "thinner than a voxel");
         out_format(o, "%.3g %% of its area\n", 100 * r->thin);

@@ -149,6 +149,8 @@ typedef struct known {
     X("contact.element", MODEL_I32, "@element", "contact", 1, 1, KNOWN_EVERY, KNOWN_ANY, 0, 0, "bind",                 \
       "element that a sample of skin, which may touch itself, is bound to")                                            \
     X("contact.weight", MODEL_F64, "1", "contact", 3, 3, 0, KNOWN_FINITE, 0, 0, "bind", "its 3 weights (W&M eq. 1)")   \
+    X("contact.blended", MODEL_U8, "1", "contact", 1, 1, 0, KNOWN_FROM, 0, 1, "bind",                                  \
+      "1 = it moves blended, as MOTION in bind(1) says; without the array none does")                                  \
     X("skin.node", MODEL_I32, "@node", "skin", 1, 1, KNOWN_EVERY, KNOWN_ANY, 0, 0, "bind",                             \
       "node about that skin; ascending")                                                                               \
     X("skin.distance", MODEL_F32, "m", "skin", 1, 1, 0, KNOWN_FINITE, 0, 0, "bind",                                    \

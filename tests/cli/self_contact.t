@@ -41,6 +41,8 @@ is "$(sinew export -f model --text "$T/touching" | awk '
 sinew bind -q --self-contact upper:9mm,9mm,-1mm,31mm,31mm,1mm --contact-spacing 1.25 <"$T/two" >"$T/box"
 is "$(get axis.contact "$T/box")" 545 "samples on vertices, edges and in triangles of a box"
 sinew bind -q --self-contact 'low*,upper' <"$T/two" >"$T/names"
+sinew bind -q --motion element --self-contact lower,upper <"$T/two" >"$T/own" 2>/dev/null
+is "$(get contact.blended.min "$T/touching") $(sinew info "$T/own" | grep -c contact.blended)" "1 0" "samples move blended, or with their elements alone as vertices do"
 is "$(get axis.contact "$T/names")" "$(get axis.contact "$T/touching")" "by names of groups, or of the surface"
 sinew bind -q --self-contact auto <"$T/two" >"$T/auto"
 is "$(get axis.contact "$T/auto")" "$(get axis.contact "$T/touching")" "auto: all that is within 8 voxels of the slit"

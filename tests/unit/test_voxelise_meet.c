@@ -146,7 +146,8 @@ static int64_t count(const mesh *m)
 {
     int64_t pairs = -1;
     err e = {0};
-    if (meet_count(m->position, m->vertex, m->triangles, 2, &pairs, &e))
+    double deepest;
+    if (meet_count(m->position, m->vertex, m->triangles, 2, &pairs, &deepest, &e))
         ok(false, "%s", e.text);
     return pairs;
 }

@@ -14,12 +14,10 @@ static const double listed_facing = .8;
 void contact_place(const self_contact_work *w, int64_t sample, double x[3])
 {
     const self_contact *c = w->c;
-    const int32_t *node = c->element + 8 * (int64_t)c->sample_element[sample];
-    for (int a = 0; a < 3; a++) {
-        x[a] = 0;
-        for (int k = 0; k < 8; k++)
-            x[a] += c->share[8 * sample + k] * w->x[3 * (int64_t)node[k] + a];
-    }
+    x[0] = x[1] = x[2] = 0;
+    for (int32_t k = c->lever_start[sample]; k < c->lever_start[sample + 1]; k++)
+        for (int a = 0; a < 3; a++)
+            x[a] += c->lever_share[k] * w->x[3 * (int64_t)c->lever_node[k] + a];
 }
 
 static int32_t cell_of(const self_contact_work *w, const int64_t at[3])

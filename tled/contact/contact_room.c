@@ -2,6 +2,7 @@
 
 #include "base/mem.h"
 #include "surface/hash.h"
+#include "tled/contact/contact_blend.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -24,6 +25,8 @@ void self_contact_room_free(self_contact_work *w)
     free(w->near);
     free(w->until);
     free(w->touch);
+    free(w->place_node);
+    free(w->place_share);
     free(w->solid);
     free(w->bone_until);
     free(w->bone_touch);
@@ -50,6 +53,7 @@ self_contact_work *contact_room_make(const tled_problem *p, const self_contact *
     w->p = p;
     w->c = c;
     w->cells = hash_size(c->elements);
+    w->place_most = c->blend ? BLEND_MOST : 8;
     if ((w->u = mem_array(c->nodes, 3 * sizeof *w->u, what, e)) &&
         (w->v = mem_array(c->nodes, 3 * sizeof *w->v, what, e)) &&
         (w->x = mem_array(c->nodes, 3 * sizeof *w->x, what, e)) &&
@@ -64,6 +68,8 @@ self_contact_work *contact_room_make(const tled_problem *p, const self_contact *
         (w->near = mem_array(c->samples, sizeof *w->near, what, e)) &&
         (w->until = mem_array(c->samples, sizeof *w->until, what, e)) &&
         (w->touch = mem_array(c->samples, 2 * sizeof *w->touch, what, e)) &&
+        (w->place_node = mem_array(c->samples, (size_t)w->place_most * sizeof *w->place_node, what, e)) &&
+        (w->place_share = mem_array(c->samples, (size_t)w->place_most * sizeof *w->place_share, what, e)) &&
         (w->solid = mem_array(c->solids, sizeof *w->solid, what, e)) &&
         (w->bone_until = mem_array(c->solids * c->samples, sizeof *w->bone_until, what, e)) &&
         (w->bone_touch = mem_array(c->solids ? c->samples : 0, sizeof *w->bone_touch, what, e)) &&
@@ -87,7 +93,8 @@ int64_t self_contact_bytes(const self_contact_work *w)
     if (!w)
         return 0;
     const self_contact *c = w->c;
-    return c->nodes * (16 * (int64_t)sizeof(double) + (int64_t)sizeof(int32_t)) +
+    return c->samples * w->place_most * (int64_t)(sizeof(int32_t) + sizeof(double)) +
+           c->nodes * (16 * (int64_t)sizeof(double) + (int64_t)sizeof(int32_t)) +
            c->samples *
                ((2 + (c->solids > 0)) * (int64_t)sizeof(touch) + 8 * (1 + c->solids) + (int64_t)sizeof(int32_t)) +
            c->elements * (15 * (int64_t)sizeof(double) + (CANDIDATES + 3) * (int64_t)sizeof(int32_t)) +

@@ -13,12 +13,14 @@ typedef struct touch {
     int32_t sample, element; /* rows; element: -1 in bone */
     int sides;               /* that move: the sample's, and the place's, unless that is bone; 0: it touches nothing */
     double carried[3];       /* m: by which bone moves there in the step; else 0 */
-    double share[8];         /* of the place's nodes */
-    double normal[3], off;   /* off: g - g0, m */
-    double part[2];          /* of the sides: they sum to 1 */
-    double width;            /* no less than the sum of what units of lambda at all contacts move this one by */
-    double fresh, lambda;    /* beta; m */
-    double rubbed[3];        /* m/s: by friction */
+    int count;               /* of the place's nodes: */
+    int32_t *node;           /* their rows, and shares: of the room's */
+    double *share;
+    double normal[3], off; /* off: g - g0, m */
+    double part[2];        /* of the sides: they sum to 1 */
+    double width;          /* no less than the sum of what units of lambda at all contacts move this one by */
+    double fresh, lambda;  /* beta; m */
+    double rubbed[3];      /* m/s: by friction */
 } touch;
 
 /* Bone that skin may not enter. */
@@ -50,6 +52,9 @@ struct self_contact_work {
     touch *touch;  /* samples x 2: first one for each of near, of element -1 where that touches nothing; then those that
                       do, and those in bone */
     int64_t touches;
+    int32_t *place_node; /* samples x place_most: what touches point to */
+    double *place_share;
+    int place_most;
     contact_solid *solid; /* solids */
     double *bone_until;   /* solids x samples: as until */
     touch *bone_touch;    /* samples: what touches bone */

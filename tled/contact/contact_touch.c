@@ -1,5 +1,6 @@
 #include "tled/contact/contact_touch.h"
 
+#include "tled/contact/contact_blend.h"
 #include "tled/contact/contact_near.h"
 
 #include <math.h>
@@ -26,8 +27,7 @@ double contact_normal(const self_contact_work *w, int64_t sample, double normal[
 {
     const int32_t element = w->c->sample_element[sample];
     const deformed_map d = contact_map(w, element);
-    double xi[3];
-    deformed_place_of_shares(w->c->share + 8 * sample, xi);
+    const double *xi = w->c->place + 3 * sample;
     deformed_slope(&d, xi, &w->c->distance[element], normal);
     return certainty(w, element, xi);
 }
@@ -57,6 +57,50 @@ static int sort_candidates(const self_contact_work *w, int64_t sample, const dou
     return count;
 }
 
+/* The place in an element that moves to x. Where skin is blended it is where the element's own motion takes to x, less
+ * what the two motions differ by. */
+static bool find_place(const self_contact_work *w, int32_t element, const double x[3], double xi[3])
+{
+    enum { TURNS = 2 };
+    const contact_blend *b = w->c->blend;
+    const deformed_map d = contact_map(w, element);
+    if (!deformed_place(&d, x, xi))
+        return false;
+    for (int turn = 0; b && turn < TURNS; turn++) {
+        const int32_t *node = b->node + BLEND_MOST * (int64_t)element;
+        double share[BLEND_MOST], to[3];
+        contact_blend_shares(b, element, xi, share);
+        for (int a = 0; a < 3; a++) {
+            to[a] = x[a] + deformed_value(&d.at[a], xi);
+            for (int k = 0; k < b->count[element]; k++)
+                to[a] -= share[k] * w->x[3 * (int64_t)node[k] + a];
+        }
+        if (!deformed_place(&d, to, xi))
+            return false;
+    }
+    return true;
+}
+
+/* The nodes that move a place in an element, and their shares. */
+static void take_shares(const self_contact_work *w, const double place[3], touch *t)
+{
+    const contact_blend *b = w->c->blend;
+    if (!b) {
+        t->count = 8;
+        memcpy(t->node, w->c->element + 8 * (int64_t)t->element, 8 * sizeof *t->node);
+        deformed_shares(place, t->share);
+        return;
+    }
+    double share[BLEND_MOST];
+    contact_blend_shares(b, t->element, place, share);
+    t->count = 0;
+    for (int k = 0; k < b->count[t->element]; k++)
+        if (fabs(share[k]) > BLEND_LEAST) {
+            t->node[t->count] = b->node[BLEND_MOST * (int64_t)t->element + k];
+            t->share[t->count++] = share[k];
+        }
+}
+
 /* The element that holds a sample, or else the one that it is least outside of; -1: none within CONTACT_BEYOND. */
 static int32_t find_element(const self_contact_work *w, int64_t sample, const double x[3], double place[3])
 {
@@ -66,8 +110,7 @@ static int32_t find_element(const self_contact_work *w, int64_t sample, const do
     int32_t found = -1;
     for (int k = 0; k < count && least > 0; k++) {
         double xi[3];
-        const deformed_map d = contact_map(w, list[k].element);
-        if (!deformed_place(&d, x, xi))
+        if (!find_place(w, list[k].element, x, xi))
             continue;
         const double outside = deformed_outside(xi);
         if (outside < least) {
@@ -108,7 +151,6 @@ static bool find_touch(const self_contact_work *w, int64_t sample, touch *t, dou
     const bool near = contact_have_neighbour(w, c->sample_element[sample], t->element);
     const deformed_factors *distance = &c->distance[t->element];
     const deformed_map d = contact_map(w, t->element);
-    deformed_shares(place, t->share);
     const double slope = deformed_slope(&d, place, distance, t->normal);
     if (!(slope > 0))
         return false;
@@ -120,7 +162,10 @@ static bool find_touch(const self_contact_work *w, int64_t sample, touch *t, dou
     for (int a = 0; a < 3; a++)
         dot += own[a] * t->normal[a];
     turn_normal(t->normal, other, own, sure);
-    return dot < (near ? near_facing : facing);
+    if (!(dot < (near ? near_facing : facing)))
+        return false;
+    take_shares(w, place, t);
+    return true;
 }
 
 /* A sample and what it may touch both move, and by more where they are extrapolated: a share of what is clear. */
@@ -133,6 +178,8 @@ static void touch_work(void *context, int64_t chunk, int64_t from, int64_t to)
     for (int64_t i = from; i < to; i++) {
         const int32_t sample = w->near[i];
         double clear = 0;
+        w->touch[i].node = w->place_node + i * w->place_most;
+        w->touch[i].share = w->place_share + i * w->place_most;
         if (w->drift < w->until[sample] || !find_touch(w, sample, &w->touch[i], &clear))
             w->touch[i].element = -1;
         if (clear > 0)

@@ -1,7 +1,9 @@
 #include "tled/contact/self_contact.h"
 
 #include "base/mem.h"
+#include "mesh/motion.h"
 #include "mesh/weights.h"
+#include "tled/contact/contact_blend.h"
 #include "tled/contact/contact_bone.h"
 #include "tled/contact/contact_near.h"
 #include "tled/contact/contact_room.h"
@@ -105,9 +107,9 @@ static int take_elements(reader *r, const int32_t *rank)
     c->element = mem_array(c->elements, 8 * sizeof *c->element, "the skin", r->e);
     c->distance = mem_array(c->elements, sizeof *c->distance, "the skin", r->e);
     c->sample_element = mem_array(c->samples, sizeof *c->sample_element, "the skin", r->e);
-    c->share = mem_array(c->samples, 8 * sizeof *c->share, "the skin", r->e);
+    c->place = mem_array(c->samples, 3 * sizeof *c->place, "the skin", r->e);
     c->rest = mem_array(c->samples, sizeof *c->rest, "the skin", r->e);
-    if (!c->node || !c->element || !c->distance || !c->sample_element || !c->share || !c->rest)
+    if (!c->node || !c->element || !c->distance || !c->sample_element || !c->place || !c->rest)
         return -1;
     c->nodes = r->distances;
     memcpy(c->node, r->at, (size_t)c->nodes * sizeof *c->node);
@@ -123,10 +125,115 @@ static int take_elements(reader *r, const int32_t *rank)
         c->distance[i] = deformed_factors_of(value);
     }
     for (int64_t i = 0; i < c->samples; i++) {
+        double share[8];
         c->sample_element[i] = rank[r->of[i]];
-        weights_shares(r->weight + 3 * i, c->share + 8 * i);
+        weights_shares(r->weight + 3 * i, share);
+        deformed_place_of_shares(share, c->place + 3 * i);
     }
     return 0;
+}
+
+/* The elements, a vertex in each, as a surface whose motion lists what is around them. */
+typedef struct blended_skin {
+    bound of;
+    double *position, *weight;
+    int32_t *element;
+    uint8_t *blended;
+} blended_skin;
+
+static int make_skin(blended_skin *k, const reader *r, const int32_t *rank)
+{
+    const tled_problem *p = r->p;
+    const int64_t count = r->c->elements;
+    if (!(k->position = mem_array(count, 3 * sizeof *k->position, "the skin", r->e)) ||
+        !(k->weight = mem_array(count, 3 * sizeof *k->weight, "the skin", r->e)) ||
+        !(k->element = mem_array(count, sizeof *k->element, "the skin", r->e)) ||
+        !(k->blended = mem_array(count, sizeof *k->blended, "the skin", r->e)))
+        return -1;
+    k->of = (bound){.shape = {.position = k->position, .vertices = count},
+                    .element = k->element,
+                    .weight = k->weight,
+                    .blended = k->blended,
+                    .node = p->element_node,
+                    .corners = 8,
+                    .rest = p->position};
+    memset(k->blended, 1, (size_t)count);
+    for (int64_t i = 0; i < p->elements; i++)
+        if (rank[i] >= 0)
+            k->element[rank[i]] = (int32_t)i;
+    return 0;
+}
+
+/* Nodes that move elements, and are not among those that have distances. */
+static int add_nodes(reader *r, const motion *all)
+{
+    self_contact *c = r->c;
+    int64_t room = c->nodes;
+    for (int64_t i = 0; i < 8 * all->entries; i++) {
+        const int32_t n = r->p->element_node[8 * (int64_t)all->element[i / 8] + i % 8];
+        if (r->row[n] >= 0)
+            continue;
+        if (mem_grow(&c->node, &room, c->nodes + 1, sizeof *c->node, "the skin", r->e))
+            return -1;
+        r->row[n] = (int32_t)c->nodes;
+        c->node[c->nodes++] = n;
+    }
+    return 0;
+}
+
+/* The elements' rings are made by then, of the nodes that have distances alone. */
+static int make_blend(reader *r, const int32_t *rank)
+{
+    self_contact *c = r->c;
+    blended_skin k = {.position = NULL};
+    motion all = {.of = NULL};
+    c->blend = mem_array(1, sizeof *c->blend, "the skin", r->e);
+    const int failed =
+        !c->blend || make_skin(&k, r, rank) || motion_open(&all, &k.of, r->p->nodes, r->p->elements, r->e) ||
+        add_nodes(r, &all) ||
+        contact_blend_make(c->blend, &all, k.element, c->elements, r->p->element_node, r->row, r->p->side, r->e);
+    motion_free(&all);
+    free(k.position);
+    free(k.weight);
+    free(k.element);
+    free(k.blended);
+    return failed ? -1 : 0;
+}
+
+/* What moves a sample: returns how many nodes. */
+static int sample_shares(const self_contact *c, int64_t sample, int32_t *node, double *share)
+{
+    const contact_blend *b = c->blend;
+    const int64_t element = c->sample_element[sample];
+    double all[BLEND_MOST];
+    int count = 0;
+    if (!b) {
+        memcpy(node, c->element + 8 * element, 8 * sizeof *node);
+        deformed_shares(c->place + 3 * sample, share);
+        return 8;
+    }
+    contact_blend_shares(b, element, c->place + 3 * sample, all);
+    for (int k = 0; k < b->count[element]; k++)
+        if (fabs(all[k]) > BLEND_LEAST) {
+            node[count] = b->node[BLEND_MOST * element + k];
+            share[count++] = all[k];
+        }
+    return count;
+}
+
+static int make_levers(const reader *r)
+{
+    self_contact *c = r->c;
+    int64_t nodes = 0, shares = 0, count = 0;
+    c->lever_start = mem_array(c->samples + 1, sizeof *c->lever_start, "the skin", r->e);
+    for (int64_t i = 0; c->lever_start && i < c->samples; i++) {
+        if (mem_grow(&c->lever_node, &nodes, count + BLEND_MOST, sizeof *c->lever_node, "the skin", r->e) ||
+            mem_grow(&c->lever_share, &shares, count + BLEND_MOST, sizeof *c->lever_share, "the skin", r->e))
+            return -1;
+        count += sample_shares(c, i, c->lever_node + count, c->lever_share + count);
+        c->lever_start[i + 1] = (int32_t)count;
+    }
+    return c->lever_start ? 0 : -1;
 }
 
 /* The nodes of the elements around an element's nodes, ascending. Returns how many. */
@@ -167,8 +274,9 @@ static int make_rings(reader *r, const int32_t *rank)
 static int read_all(reader *r, const model *m)
 {
     int32_t *rank = mem_array(r->p->elements, sizeof *rank, "the skin", r->e);
-    const int failed =
-        !rank || find_arrays(r, m) || list_elements(r, rank) || take_elements(r, rank) || make_rings(r, rank);
+    const int failed = !rank || find_arrays(r, m) || list_elements(r, rank) || take_elements(r, rank) ||
+                       make_rings(r, rank) || (model_find(m, "contact.blended") && make_blend(r, rank)) ||
+                       make_levers(r);
     free(rank);
     free(r->row);
     return failed ? -1 : 0;
@@ -180,7 +288,13 @@ void self_contact_free(self_contact *c)
     free(c->ring);
     free(c->node);
     free(c->sample_element);
-    free(c->share);
+    free(c->place);
+    free(c->lever_start);
+    free(c->lever_node);
+    free(c->lever_share);
+    if (c->blend)
+        contact_blend_free(c->blend);
+    free(c->blend);
     free(c->element);
     free(c->distance);
     free(c->rest);
@@ -191,10 +305,9 @@ void self_contact_free(self_contact *c)
 
 /* ---- impulses */
 
-/* The nodes of a contact, 8 of each side that moves: their rows and shares, above 0 the sample's, below 0 the place's.
- */
+/* The nodes of a contact, of each side that moves: their rows and shares. */
 typedef struct lever {
-    int sides;
+    int sides, count[2];
     const int32_t *node[2];
     const double *share[2];
 } lever;
@@ -202,10 +315,11 @@ typedef struct lever {
 static lever lever_of(const self_contact_work *w, const touch *t)
 {
     const self_contact *c = w->c;
+    const int32_t from = c->lever_start[t->sample];
     return (lever){t->sides,
-                   {c->element + 8 * (int64_t)c->sample_element[t->sample],
-                    t->sides == 2 ? c->element + 8 * (int64_t)t->element : NULL},
-                   {c->share + 8 * (int64_t)t->sample, t->share}};
+                   {c->lever_start[t->sample + 1] - from, t->count},
+                   {c->lever_node + from, t->node},
+                   {c->lever_share + from, t->share}};
 }
 
 static bool is_free(const self_contact_work *w, int32_t node, int axis)
@@ -217,18 +331,17 @@ static bool is_free(const self_contact_work *w, int32_t node, int axis)
 static void relative(const lever *l, const double *value, double to[3])
 {
     to[0] = to[1] = to[2] = 0;
-    for (int k = 0; k < 8; k++)
-        for (int a = 0; a < 3; a++)
-            to[a] += l->sides == 2 ? l->share[0][k] * value[3 * (int64_t)l->node[0][k] + a] -
-                                         l->share[1][k] * value[3 * (int64_t)l->node[1][k] + a]
-                                   : l->share[0][k] * value[3 * (int64_t)l->node[0][k] + a];
+    for (int side = 0; side < l->sides; side++)
+        for (int k = 0; k < l->count[side]; k++)
+            for (int a = 0; a < 3; a++)
+                to[a] += (side ? -1 : 1) * l->share[side][k] * value[3 * (int64_t)l->node[side][k] + a];
 }
 
 /* Adds what `way` moves both sides by: each node by its share and its side's part. */
 static void push(const self_contact_work *w, const touch *t, const lever *l, const double way[3], double *to)
 {
     for (int side = 0; side < l->sides; side++)
-        for (int k = 0; k < 8; k++) {
+        for (int k = 0; k < l->count[side]; k++) {
             const int32_t n = l->node[side][k];
             const double share = (side ? -1 : 1) * t->part[side] * l->share[side][k];
             for (int a = 0; a < 3; a++)
@@ -242,7 +355,7 @@ static void find_parts(const self_contact_work *w, touch *t)
     const lever l = lever_of(w, t);
     double mass[2] = {0, 0};
     for (int side = 0; side < l.sides; side++)
-        for (int k = 0; k < 8; k++)
+        for (int k = 0; k < l.count[side]; k++)
             mass[side] += l.share[side][k] * w->p->mass[w->c->node[l.node[side][k]]];
     const double all = mass[0] + mass[1];
     t->part[0] = t->sides == 1 ? 1 : mass[0] > 0 && mass[1] > 0 ? mass[1] / all : .5;
@@ -255,7 +368,7 @@ static void sum_shares(self_contact_work *w)
     for (int64_t i = 0; i < w->touches; i++) {
         const lever l = lever_of(w, &w->touch[i]);
         for (int side = 0; side < l.sides; side++)
-            for (int k = 0; k < 8; k++) {
+            for (int k = 0; k < l.count[side]; k++) {
                 double *sum = &w->sum[l.node[side][k]];
                 if (*sum == 0)
                     w->about[w->abouts++] = l.node[side][k];
@@ -269,7 +382,7 @@ static void find_width(const self_contact_work *w, touch *t)
     const lever l = lever_of(w, t);
     t->width = 0;
     for (int side = 0; side < l.sides; side++)
-        for (int k = 0; k < 8; k++)
+        for (int k = 0; k < l.count[side]; k++)
             for (int a = 0; a < 3; a++)
                 t->width += is_free(w, l.node[side][k], a)
                                 ? fabs(l.share[side][k]) * w->sum[l.node[side][k]] * t->normal[a] * t->normal[a]

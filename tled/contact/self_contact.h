@@ -19,6 +19,9 @@
  *
  * Bone that skin may not enter (contact_bone.h) is a side that nothing moves: the sample's takes it all.
  *
+ * Skin may move blended, as it is drawn (mesh/motion.h): then N are the shares of all nodes that move a sample, or a
+ * place in an element, so; and the place is the one that this takes to the sample (contact_blend.h).
+ *
  * A table of where elements are, in cells of space, is made anew when any node has moved by more than its margin; which
  * contacts there are does not depend on when. All in double, in one order: the same bytes for any number of threads.
  * The creator owns a self_contact; it borrows the model.
@@ -34,10 +37,14 @@
 #define SELF_CONTACT_DEEP .1 /* of a shortest side: deeper than that at rest is worth a word */
 
 typedef struct self_contact {
-    int64_t samples, elements, nodes; /* elements: that samples may be in; nodes: of these, and of the samples' */
-    int32_t *node;                    /* nodes: of the model, ascending; all is owned */
+    int64_t samples, elements, nodes; /* elements: that samples may be in; nodes: of these, and what moves samples */
+    int32_t *node;                    /* nodes: of the model; all is owned */
     int32_t *sample_element;          /* samples: rows of `element` */
-    double *share;                    /* samples x 8 */
+    double *place;                    /* samples x 3: in its element, 0 to 1 along each axis in it */
+    int32_t *lever_start;             /* samples + 1: of what moves each: */
+    int32_t *lever_node;              /* rows of `node` */
+    double *lever_share;              /* which sum to 1 */
+    struct contact_blend *blend;      /* of skin that moves blended; NULL: with its element alone */
     int32_t *element;                 /* elements x 8: rows of `node` */
     deformed_factors *distance;       /* elements, m: phi */
     double *rest;                     /* samples, m: g0, at most 0 */

@@ -353,7 +353,7 @@ static int measure(work *w, check_result *r, const double *voxel, int threads, e
         return -1;
     measure_shells(w, r);
     r->thin = NAN;
-    if (meet_count(w->place.position, w->vertex, w->triangles, threads, &r->met, e))
+    if (meet_count(w->place.position, w->vertex, w->triangles, threads, &r->met, &r->deepest, e))
         return -1;
     if (r->open)
         return 0;

@@ -14,6 +14,7 @@ typedef struct check_result {
     int64_t turned;                        /* edges of two polygons that do not face the same way */
     int64_t shells;                        /* parts that edges join */
     int64_t met;                           /* pairs of triangles that pass through each other: meet.h */
+    double deepest;                        /* of these, the most that one would have to move: meet_depth */
     double volume, area;                   /* enclosed by an odd number of shells; 0 where an edge is open */
     double thin; /* of the area: the share where less than a voxel is behind it; nan: not asked, or open */
     double low[3], high[3];

@@ -234,6 +234,59 @@ static int count_through(const edges *inside, const double *position, const int3
     return 0;
 }
 
+/* ---- how deep */
+
+/* Of two triangles along an axis of any length, in its length: the least way that takes one off the other. */
+static double overlap(corners one, corners other, const double *axis)
+{
+    double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+    const double length = sqrt(axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2]);
+    for (int i = 0; i < 6; i++) {
+        const double *p = i < 3 ? one[i] : other[i - 3];
+        const double along = axis[0] * p[0] + axis[1] * p[1] + axis[2] * p[2];
+        low[i / 3] = fmin(low[i / 3], along);
+        high[i / 3] = fmax(high[i / 3], along);
+    }
+    return length > 0 ? fmin(high[0] - low[1], high[1] - low[0]) / length : INFINITY;
+}
+
+static void cross(const double *u, const double *v, double *to)
+{
+    for (int a = 0; a < 3; a++)
+        to[a] = u[(a + 1) % 3] * v[(a + 2) % 3] - u[(a + 2) % 3] * v[(a + 1) % 3];
+}
+
+static void edges_of(corners t, double edge[3][3])
+{
+    for (int i = 0; i < 3; i++)
+        for (int a = 0; a < 3; a++)
+            edge[i][a] = t[(i + 1) % 3][a] - t[i][a];
+}
+
+static double depth_of(corners one, corners other)
+{
+    double u[3][3], v[3][3], axis[3];
+    edges_of(one, u);
+    edges_of(other, v);
+    cross(u[0], u[1], axis);
+    double least = overlap(one, other, axis);
+    cross(v[0], v[1], axis);
+    least = fmin(least, overlap(one, other, axis));
+    for (int i = 0; i < 9; i++) {
+        cross(u[i / 3], v[i % 3], axis);
+        least = fmin(least, overlap(one, other, axis));
+    }
+    return fmax(least, 0);
+}
+
+double meet_depth(const double *position, const int32_t *one, const int32_t *other)
+{
+    const double *p[3], *q[3];
+    corners_of(position, one, p);
+    corners_of(position, other, q);
+    return depth_of(p, q);
+}
+
 /* ---- pairs whose boxes overlap */
 
 typedef struct work {
@@ -243,6 +296,7 @@ typedef struct work {
     atomic_llong count;
     pthread_mutex_t lock; /* of what follows */
     edges inside;
+    double deepest;
     bool failed;
     err *e;
 } work;
@@ -272,6 +326,13 @@ static void keep_edge(work *w, within edge)
     pthread_mutex_unlock(&w->lock);
 }
 
+static void keep_depth(work *w, double depth)
+{
+    pthread_mutex_lock(&w->lock);
+    w->deepest = fmax(w->deepest, depth);
+    pthread_mutex_unlock(&w->lock);
+}
+
 static void take_pair(void *context, int64_t one, int64_t other)
 {
     work *w = context;
@@ -284,6 +345,7 @@ static void take_pair(void *context, int64_t one, int64_t other)
     find_sides(p, q, of_q);
     if (cross_inside(p, of_p, q, of_q)) {
         atomic_fetch_add(&w->count, 1);
+        keep_depth(w, depth_of(p, q));
         return;
     }
     for (int i = 0; i < 3; i++) {
@@ -310,7 +372,8 @@ static void frame(work *w, int64_t triangles)
     w->scale = longest > 0 ? 2 * reach / longest : 1;
 }
 
-int meet_count(const double *position, const int32_t *vertex, int64_t triangles, int threads, int64_t *count, err *e)
+int meet_count(const double *position, const int32_t *vertex, int64_t triangles, int threads, int64_t *count,
+               double *deepest, err *e)
 {
     work w = {.position = position, .vertex = vertex, .e = e};
     frame(&w, triangles);
@@ -322,6 +385,7 @@ int meet_count(const double *position, const int32_t *vertex, int64_t triangles,
     candidates_destroy(near);
     pthread_mutex_destroy(&w.lock);
     *count = atomic_load(&w.count);
+    *deepest = w.deepest;
     int status = w.failed ? -1 : count_through(&w.inside, position, vertex, triangles, count, e);
     free(w.inside.edge);
     return status;

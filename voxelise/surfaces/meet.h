@@ -9,8 +9,14 @@
 #include "base/err.h"
 
 /* vertex: triangles x 3; those at one place are one. Coordinates as grid.h wants them. threads: to look with. count:
- * the pairs, those of a triangle and one that leaves it by an edge within it too. -1 with e filled. */
-int meet_count(const double *position, const int32_t *vertex, int64_t triangles, int threads, int64_t *count, err *e);
+ * the pairs, those of a triangle and one that leaves it by an edge within it too. deepest: of pairs whose insides
+ * meet, the most of meet_depth; 0 without any. -1 with e filled. */
+int meet_count(const double *position, const int32_t *vertex, int64_t triangles, int threads, int64_t *count,
+               double *deepest, err *e);
+
+/* How far one of two triangles that meet has to go, the shortest way, to come off the other: the least overlap along
+ * their normals and the directions across an edge of each (the separating axis theorem). */
+double meet_depth(const double *position, const int32_t *one, const int32_t *other);
 
 /* Whether the insides of two triangles meet along a line. */
 bool meet_triangles(const double *position, const int32_t *one, const int32_t *other);

@@ -1,0 +1,40 @@
+/* The shares that nodes have in a place of an element that moves blended, as the skin is drawn (mesh/motion.h): the
+ * maps of the element's eight nodes, each the mean of the elements around it, are linear in the displacements of nodes
+ * near it. The creator owns it; it borrows nothing.
+ */
+#ifndef SINEW_CONTACT_BLEND_H
+#define SINEW_CONTACT_BLEND_H
+
+#include "mesh/motion.h"
+
+enum {
+    BLEND_NODES = 27, /* the most of a node's map */
+    BLEND_MOST = 96   /* and of an element's eight, of which slits may have more than 64 */
+};
+
+typedef struct contact_blend {
+    double side[3];   /* m: of an element */
+    int64_t elements; /* rows */
+    int32_t *place;   /* elements x 8: of the maps below; -1: the node has that of the element itself */
+    int32_t *node;    /* elements x BLEND_MOST: rows of nodes, of so many: */
+    uint8_t *count;   /* elements */
+    uint8_t *index;   /* elements x 8 x BLEND_NODES: which of these an entry of a node's map is */
+    int32_t *start;   /* maps + 1 */
+    double *
+        coefficient; /* entries x 4: of a displacement, in the map's at its node, and in its slope along x, y, z, 1/m */
+} contact_blend;
+
+/* A share that is not counted. */
+#define BLEND_LEAST 1e-9
+
+/* of: a motion, opened, in which all of these elements are. element: which of the model's each row is; node: the
+ * model's elements' nodes (x 8); row: of the model's nodes, which all that move them have. -1 with e filled, and b to
+ * be freed all the same. */
+int contact_blend_make(contact_blend *b, const motion *of, const int32_t *element, int64_t elements,
+                       const int32_t *node, const int32_t *row, const double side[3], err *e);
+void contact_blend_free(contact_blend *b);
+
+/* Of a place in an element's row, 0 to 1 along each axis in it: fills share, of b->count of nodes. */
+void contact_blend_shares(const contact_blend *b, int64_t element, const double xi[3], double share[BLEND_MOST]);
+
+#endif
