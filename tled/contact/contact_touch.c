@@ -57,28 +57,24 @@ static int sort_candidates(const self_contact_work *w, int64_t sample, const dou
     return count;
 }
 
-/* The place in an element that moves to x. Where skin is blended it is where the element's own motion takes to x, less
- * what the two motions differ by. */
-static bool find_place(const self_contact_work *w, int32_t element, const double x[3], double xi[3])
+/* Where skin is blended: from the place in an element whose own motion goes to x to the one whose blended motion does,
+ * to second order in what the two differ by. */
+static bool blend_place(const self_contact_work *w, int32_t element, const double x[3], double xi[3])
 {
     enum { TURNS = 2 };
     const contact_blend *b = w->c->blend;
+    const int32_t *node = b->node + BLEND_MOST * (int64_t)element;
     const deformed_map d = contact_map(w, element);
-    if (!deformed_place(&d, x, xi))
-        return false;
-    for (int turn = 0; b && turn < TURNS; turn++) {
-        const int32_t *node = b->node + BLEND_MOST * (int64_t)element;
-        double share[BLEND_MOST], to[3];
+    for (int turn = 0; turn < TURNS; turn++) {
+        double share[BLEND_MOST], way[3] = {x[0], x[1], x[2]};
         contact_blend_shares(b, element, xi, share);
-        for (int a = 0; a < 3; a++) {
-            to[a] = x[a] + deformed_value(&d.at[a], xi);
-            for (int k = 0; k < b->count[element]; k++)
-                to[a] -= share[k] * w->x[3 * (int64_t)node[k] + a];
-        }
-        if (!deformed_place(&d, to, xi))
+        for (int k = 0; k < b->count[element]; k++)
+            for (int a = 0; a < 3; a++)
+                way[a] -= share[k] * w->x[3 * (int64_t)node[k] + a];
+        if (!deformed_go(&d, way, xi))
             return false;
     }
-    return true;
+    return deformed_outside(xi) < CONTACT_BEYOND;
 }
 
 /* The nodes that move a place in an element, and their shares. */
@@ -110,7 +106,8 @@ static int32_t find_element(const self_contact_work *w, int64_t sample, const do
     int32_t found = -1;
     for (int k = 0; k < count && least > 0; k++) {
         double xi[3];
-        if (!find_place(w, list[k].element, x, xi))
+        const deformed_map d = contact_map(w, list[k].element);
+        if (!deformed_place(&d, x, xi))
             continue;
         const double outside = deformed_outside(xi);
         if (outside < least) {
@@ -146,7 +143,7 @@ static bool find_touch(const self_contact_work *w, int64_t sample, touch *t, dou
     t->sides = 2;
     t->element = find_element(w, sample, x, place);
     *clear = CONTACT_MARGIN * c->shortest;
-    if (t->element < 0)
+    if (t->element < 0 || (c->blend && !blend_place(w, t->element, x, place)))
         return false;
     const bool near = contact_have_neighbour(w, c->sample_element[sample], t->element);
     const deformed_factors *distance = &c->distance[t->element];

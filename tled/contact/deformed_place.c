@@ -95,6 +95,15 @@ static double cofactors(const deformed_map *d, const double xi[3], double cofact
     return j[0][0] * cofactor[0][0] + j[0][1] * cofactor[0][1] + j[0][2] * cofactor[0][2];
 }
 
+bool deformed_go(const deformed_map *d, const double way[3], double xi[3])
+{
+    double c[3][3];
+    const double det = cofactors(d, xi, c);
+    for (int a = 0; a < 3 && det > 0; a++)
+        xi[a] += (c[0][a] * way[0] + c[1][a] * way[1] + c[2][a] * way[2]) / det;
+    return det > 0;
+}
+
 bool deformed_place(const deformed_map *d, const double x[3], double xi[3])
 {
     xi[0] = xi[1] = xi[2] = .5;

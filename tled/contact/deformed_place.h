@@ -24,6 +24,9 @@ deformed_map deformed_map_of(double corner[8][3]);
 /* By Newton's method from the middle. false where the element has no place for it within two of its sides. */
 bool deformed_place(const deformed_map *d, const double x[3], double xi[3]);
 
+/* Moves a place on by what takes it `way` (m) on in space, to first order. false: the element is folded there. */
+bool deformed_go(const deformed_map *d, const double way[3], double xi[3]);
+
 /* How far x is from the middle, squared, m2. */
 double deformed_from_middle(const deformed_map *d, const double x[3]);
 
