@@ -1,19 +1,21 @@
-# Expressions of a real face as a contact sheet: smile, frown, pucker, disgust and an open jaw, of face.expressions, by all the muscles
-# that it has and with its lips open. Into ../out: NAME.expressions.png; NAME.expressions.tsv, how far the corners of its mouth move
+# Expressions of a real face as a contact sheet: smile, frown, pucker, disgust, an open jaw, ooh and blow, of face.expressions, by all
+# the muscles that it has and with its lips open. Into ../out: NAME.expressions.png; NAME.expressions.tsv, how far the corners of its mouth move
 # (x, y, z and length in the OBJ's unit, of the left and the right one).
 #
 #     make expressions FACE=face_all.obj                   the face of ArtiSynth, with 34 muscles
 #     make expressions FACE=face_all.obj EXPRESSIONS_SIDE=1.25
 #
-# The lips, in a box, touch each other; of another face EXPRESSIONS_LIPS=auto takes all that is about its mouth.
+# The lips, in a box, touch each other, and may slide on the teeth and come off them; of another face EXPRESSIONS_LIPS=auto takes all
+# that is about its mouth, and EXPRESSIONS_SLIDE= lets nothing slide.
 #
 # The skull is cut into skull and jaw as in jaw.mk. Tissue and muscles are those of face.materials.
 
 EXPRESSIONS_SIDE = 2.5
 EXPRESSIONS_LIPS = skin:-28,50,-102,28,90,-65
+EXPRESSIONS_SLIDE = skull,skull_jaw:-22,40,-108,22,75,-58
 EXPRESSIONS_TISSUE = -m muscle.peak=3e5
-EXPRESSIONS_RUN = --precision single --rise-fall 0.01,0.04 -t 2.15 --every 0.05
-EXPRESSIONS_FRAMES = smile:7 frown:16 pucker:25 disgust:34 jaw-open:43
+EXPRESSIONS_RUN = --precision single --rise-fall 0.01,0.04 -t 3.2 --every 0.05
+EXPRESSIONS_FRAMES = smile:7 frown:16 pucker:25 disgust:34 jaw-open:43 ooh:54 blow:63
 EXPRESSIONS := $(OUT)/$(basename $(notdir $(or $(FACE),face))).expressions
 empty :=
 comma := ,
@@ -24,12 +26,12 @@ expressions: $(EXPRESSIONS).png $(EXPRESSIONS).tsv
 $(EXPRESSIONS).model: $(if $(FACE),$(JAW_OUT).obj) face.materials
 	$(if $(FACE),,$(error no face; expected FACE=FILE.obj, a face with groups skin, skull and muscle_*))
 	voxelise --unit mm -s $(EXPRESSIONS_SIDE) --fraction 4 --materials face.materials $< | \
-	    attach --rigid skull,skull_jaw --part jaw=skull_jaw | \
+	    attach --rigid skull,skull_jaw --part jaw=skull_jaw $(if $(EXPRESSIONS_SLIDE),--slide-off $(EXPRESSIONS_SLIDE)) | \
 	    sinew bind --self-contact $(EXPRESSIONS_LIPS) >$@
 $(EXPRESSIONS).result: $(EXPRESSIONS).model expressions.face.script face.expressions
 	tled-run $(EXPRESSIONS_TISSUE) --script expressions.face.script --expressions face.expressions $(EXPRESSIONS_RUN) <$< >$@
 $(EXPRESSIONS).png: $(EXPRESSIONS).result
-	sinew render --up z --size 1200x860 --sheet \
+	sinew render --up z --size 1600x860 --sheet \
 	    rest=rest@front$(subst $(empty) $(empty),,$(foreach f,$(EXPRESSIONS_FRAMES),$(comma)$(subst :,=front:,$(f)))) -o $@ $<
 $(EXPRESSIONS).tsv: $(EXPRESSIONS).result corner.awk
 	for f in $(EXPRESSIONS_FRAMES); do \

@@ -407,7 +407,7 @@ help:
 	'make scan         from an ultrasound volume to images of it under a probe, into out/scan' \
 	'make console      a page in a browser on an arm and a patient under a probe, and a head, live; cases in out/console' \
 	'make paper        the figures and tables of both papers, beside what they print; out/paper/paper.html' \
-	'make expressions  FACE=FILE.obj: smile, frown, pucker, disgust and an open jaw of a real face; out/NAME.expressions.png' \
+	'make expressions  FACE=FILE.obj: smile, frown, pucker, disgust, an open jaw, ooh and blow of a real face; out/NAME.expressions.png' \
 	'make picture      the pictures in README.md, anew: replaces samples/*.png' \
 	'' \
 	'make check        set-up, the build, all tests, and small lints: run it before each commit; 13 minutes on two processors' \

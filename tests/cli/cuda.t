@@ -82,23 +82,6 @@ for device in cpu cuda; do
     run "$T/slides.sinew" -q -d $device -n 1000 -g .4,.2,-9.81 --friction .3 --probe sphere:1cm --poses "$T/press.tum" --every .01 >"$T/pressed.$device"
 done
 check "in double the CPU's numbers but for rounding, and what presses" sinew diff --abs 1e-9 "$T/pressed.cpu" "$T/pressed.cuda"
-hertz() { # WHAT OPTION...
-    what=$1
-    shift
-    awk -v W=60 -v H=20 -v R=120 -v D=.3 -v what="$what" "$@" -f tests/cli/hertz.awk
-}
-if have voxelise; then
-    hertz layer >"$T/layer.obj"
-    hertz poses >"$T/layer.tum"
-    hertz script -v still=1 >"$T/layer.script"
-    voxelise -q --unit mm -s 2 "$T/layer.obj" | attach -q >"$T/layer"
-    for precision in single double; do
-        run "$T/layer" -q -d cuda --text --precision $precision -m tissue.nu=.45 --script "$T/layer.script" --probe sphere:120mm --poses "$T/layer.tum" --repulsion 4 \
-            --damping 200 -t .13 >"$T/pressed" 2>/dev/null
-        near "$(awk -v want="$(hertz force -v E=3000 -v nu=.45)" '/^array / { what = $2; next } what == "probe.force" { print $3 / want; exit }' "$T/pressed")" 1 .03 \
-            "a ball presses as the bonded layer's formula says, $precision"
-    done
-fi
 logged() { # NAME ARG...: the CPU's log in columns 1 to 13, and how many elements of muscles fall
     name=$1
     shift
@@ -128,14 +111,33 @@ hgo='-m tissue.fibre=hgo -m tissue.k1=2e4 -m tissue.k2=2'
     run "$T/muscle.sinew" -q -d cuda -n 500 -c all=0.5 $hgo -m tissue.kappa=.1 >"$T/cuda"
     check "and the CPU's bytes" sinew diff --only node.displacement,node.velocity "$T/cpu" "$T/cuda"
 }
+# Hertz: see tests/cli/tled-probe.t.
+hertz() { # WHAT OPTION...
+    what=$1
+    shift
+    awk -v W=60 -v H=20 -v R=120 -v D=.3 -v what="$what" "$@" -f tests/cli/hertz.awk
+}
+hertz poses >"$T/layer.tum"
+hertz script -v still=1 >"$T/layer.script"
 if [ -z "$SINEW_MODELS" ] && have voxelise; then
     SINEW_MODELS=$T
+    hertz layer >"$T/layer.obj"
+    voxelise -q --unit mm -s 2 "$T/layer.obj" | attach -q >"$T/layer.model"
     make -s -C samples OUT="$T" SINEW_BIN="$SINEW_BIN" "$T/sphere.model" "$T/muscle.model" "$T/block.model" "$T/head.model"
     [ -z "$DATA" ] || voxelise -q --unit mm -s 2.5 "$DATA/face/face_zyg.obj" | attach -q >"$T/face_2.5.model"
 fi
 [ -e "$SINEW_MODELS/face_2.5.model" ] || skip 1 "no real face here"
 for model in "$SINEW_MODELS"/*.model; do
     case ${model##*/} in
+    layer*)
+        for precision in single double; do
+            run "$model" -q -d cuda --text --precision $precision -m tissue.nu=.45 --script "$T/layer.script" --probe sphere:120mm --poses "$T/layer.tum" \
+                --repulsion 4 --damping 200 -t .13 >"$T/pressed" 2>/dev/null
+            near "$(awk -v want="$(hertz force -v E=3000 -v nu=.45)" '/^array/ { what = $2; next } what == "probe.force" { print $3 / want; exit }' "$T/pressed")" 1 .03 \
+                "a ball presses as the bonded layer's formula says, $precision"
+        done
+        continue
+        ;;
     sphere*) set -- -g 0,-9.81,0 ;;
     muscle*) set -- -c muscle=0.4 ;;
     block*) set -- --script samples/block.script ;;
