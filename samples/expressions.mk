@@ -28,8 +28,10 @@ $(EXPRESSIONS).model: $(if $(FACE),$(JAW_OUT).obj) face.materials
 	voxelise --unit mm -s $(EXPRESSIONS_SIDE) --fraction 4 --materials face.materials $< | \
 	    attach --rigid skull,skull_jaw --part jaw=skull_jaw $(if $(EXPRESSIONS_SLIDE),--slide-off $(EXPRESSIONS_SLIDE)) | \
 	    sinew bind --self-contact $(EXPRESSIONS_LIPS) >$@
-$(EXPRESSIONS).result: $(EXPRESSIONS).model expressions.face.script face.expressions
-	tled-run $(EXPRESSIONS_TISSUE) --script expressions.face.script --expressions face.expressions $(EXPRESSIONS_RUN) <$< >$@
+$(EXPRESSIONS).script: expressions.face.script | $(OUT)
+	sed 's/ face:/ $(JAW_NAME).jaw:/' $< >$@
+$(EXPRESSIONS).result: $(EXPRESSIONS).model $(EXPRESSIONS).script face.expressions
+	tled-run $(EXPRESSIONS_TISSUE) --script $(EXPRESSIONS).script --expressions face.expressions $(EXPRESSIONS_RUN) <$< >$@
 $(EXPRESSIONS).png: $(EXPRESSIONS).result
 	sinew render --up z --size 1600x860 --sheet \
 	    rest=rest@front$(subst $(empty) $(empty),,$(foreach f,$(EXPRESSIONS_FRAMES),$(comma)$(subst :,=front:,$(f)))) -o $@ $<
