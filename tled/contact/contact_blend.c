@@ -174,3 +174,18 @@ void contact_blend_shares(const contact_blend *b, int64_t element, const double 
             add_map(b, element, c, part[c], from, share);
     }
 }
+
+int contact_blend_lever(const contact_blend *b, int64_t element, const double xi[3], int32_t node[BLEND_MOST],
+                        double share[BLEND_MOST])
+{
+    static const double least = 1e-9;
+    double all[BLEND_MOST];
+    int count = 0;
+    contact_blend_shares(b, element, xi, all);
+    for (int k = 0; k < b->count[element]; k++)
+        if (fabs(all[k]) > least) {
+            node[count] = b->node[BLEND_MOST * element + k];
+            share[count++] = all[k];
+        }
+    return count;
+}

@@ -24,9 +24,6 @@ typedef struct contact_blend {
         coefficient; /* entries x 4: of a displacement, in the map's at its node, and in its slope along x, y, z, 1/m */
 } contact_blend;
 
-/* A share that is not counted. */
-#define BLEND_LEAST 1e-9
-
 /* of: a motion, opened, in which all of these elements are. element: which of the model's each row is; node: the
  * model's elements' nodes (x 8); row: of the model's nodes, which all that move them have. -1 with e filled, and b to
  * be freed all the same. */
@@ -36,5 +33,9 @@ void contact_blend_free(contact_blend *b);
 
 /* Of a place in an element's row, 0 to 1 along each axis in it: fills share, of b->count of nodes. */
 void contact_blend_shares(const contact_blend *b, int64_t element, const double xi[3], double share[BLEND_MOST]);
+
+/* The nodes of these that move it by more than nothing, as rows, and their shares. Returns how many. */
+int contact_blend_lever(const contact_blend *b, int64_t element, const double xi[3], int32_t node[BLEND_MOST],
+                        double share[BLEND_MOST]);
 
 #endif

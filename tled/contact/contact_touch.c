@@ -80,21 +80,13 @@ static bool blend_place(const self_contact_work *w, int32_t element, const doubl
 /* The nodes that move a place in an element, and their shares. */
 static void take_shares(const self_contact_work *w, const double place[3], touch *t)
 {
-    const contact_blend *b = w->c->blend;
-    if (!b) {
-        t->count = 8;
-        memcpy(t->node, w->c->element + 8 * (int64_t)t->element, 8 * sizeof *t->node);
-        deformed_shares(place, t->share);
+    if (w->c->blend) {
+        t->count = contact_blend_lever(w->c->blend, t->element, place, t->node, t->share);
         return;
     }
-    double share[BLEND_MOST];
-    contact_blend_shares(b, t->element, place, share);
-    t->count = 0;
-    for (int k = 0; k < b->count[t->element]; k++)
-        if (fabs(share[k]) > BLEND_LEAST) {
-            t->node[t->count] = b->node[BLEND_MOST * (int64_t)t->element + k];
-            t->share[t->count++] = share[k];
-        }
+    t->count = 8;
+    memcpy(t->node, w->c->element + 8 * (int64_t)t->element, 8 * sizeof *t->node);
+    deformed_shares(place, t->share);
 }
 
 /* The element that holds a sample, or else the one that it is least outside of; -1: none within CONTACT_BEYOND. */

@@ -203,22 +203,12 @@ static int make_blend(reader *r, const int32_t *rank)
 /* What moves a sample: returns how many nodes. */
 static int sample_shares(const self_contact *c, int64_t sample, int32_t *node, double *share)
 {
-    const contact_blend *b = c->blend;
     const int64_t element = c->sample_element[sample];
-    double all[BLEND_MOST];
-    int count = 0;
-    if (!b) {
-        memcpy(node, c->element + 8 * element, 8 * sizeof *node);
-        deformed_shares(c->place + 3 * sample, share);
-        return 8;
-    }
-    contact_blend_shares(b, element, c->place + 3 * sample, all);
-    for (int k = 0; k < b->count[element]; k++)
-        if (fabs(all[k]) > BLEND_LEAST) {
-            node[count] = b->node[BLEND_MOST * element + k];
-            share[count++] = all[k];
-        }
-    return count;
+    if (c->blend)
+        return contact_blend_lever(c->blend, element, c->place + 3 * sample, node, share);
+    memcpy(node, c->element + 8 * element, 8 * sizeof *node);
+    deformed_shares(c->place + 3 * sample, share);
+    return 8;
 }
 
 static int make_levers(const reader *r)
