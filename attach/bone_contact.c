@@ -117,21 +117,16 @@ static int find_box(const maker *k, const distance_triangles *d, int32_t low[3],
 
 /* ---- a field */
 
-static int fill_field(const maker *k, bone_field *f, const uint8_t *chosen, const double *beside)
+static int fill_field(const maker *k, bone_field *f, const bone_view *from)
 {
     int32_t low[3] = {INT32_MAX, INT32_MAX, INT32_MAX}, high[3] = {INT32_MIN, INT32_MIN, INT32_MIN};
     distance_triangles d = {.tree = NULL};
-    bool *turned = mem_array(k->r->surfaces + 1, sizeof *turned, "the rigid surfaces", k->e);
-    int failed = !turned || bone_triangles(&d, k->r, f->is, turned, k->option, k->e) ||
-                 bone_find_turned(k->r, &d, chosen, k->nodes, beside, turned, k->e);
-    distance_triangles_free(&d);
-    failed = failed || bone_triangles(&d, k->r, f->is, turned, k->option, k->e) || find_box(k, &d, low, high);
+    int failed = bone_triangles(&d, k->r, f->is, from, k->option, k->e) || find_box(k, &d, low, high);
     if (!failed) {
         bone_field_box(f, &k->grid, low, high);
         failed = bone_field_sample(f, &d, k->threads, k->e);
     }
     distance_triangles_free(&d);
-    free(turned);
     return failed ? -1 : 0;
 }
 
@@ -154,7 +149,7 @@ static int make_fields(maker *k, bool is_loose)
             chosen[n] = !is_loose && k->rigid[n] && k->anchor[n] >= 0 && f->is[k->anchor[n]];
         if (f) {
             f->touches = true;
-            failed = fill_field(k, f, chosen, beside);
+            failed = fill_field(k, f, &(bone_view){chosen, beside, k->nodes});
         }
     }
     free(chosen);

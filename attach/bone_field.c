@@ -74,8 +74,9 @@ static int collect(distance_triangles *d, const rigid *r, const bool *is, const 
     return failed;
 }
 
-int bone_triangles(distance_triangles *d, const rigid *r, const bool *is, const bool *is_turned, const char *option,
-                   err *e)
+/* turned: of rigid surfaces. */
+static int make_triangles(distance_triangles *d, const rigid *r, const bool *is, const bool *is_turned,
+                          const char *option, err *e)
 {
     if (collect(d, r, is, is_turned, e))
         return -1;
@@ -116,14 +117,14 @@ double *bone_beside(const model *m, err *e)
     return beside;
 }
 
-int bone_find_turned(const rigid *r, const distance_triangles *d, const uint8_t *chosen, int64_t nodes,
-                     const double *beside, bool *is_turned, err *e)
+/* Which surfaces have the tissue beside the chosen nodes behind them, by more than half of these. */
+static int find_turned(const rigid *r, const distance_triangles *d, const bone_view *from, bool *is_turned, err *e)
 {
     int64_t *votes = mem_array(r->surfaces + 1, sizeof *votes, "the rigid surfaces", e), guess = -1;
-    for (int64_t n = 0; votes && n < nodes; n++) {
-        if (!chosen[n])
+    for (int64_t n = 0; votes && n < from->nodes; n++) {
+        if (!from->chosen[n])
             continue;
-        const double *x = beside + 3 * n;
+        const double *x = from->beside + 3 * n;
         const triangle_hit hit = triangle_tree_nearest(d->tree, x, guess);
         guess = hit.triangle;
         votes[d->of[hit.triangle]] += pseudonormal_outside(&d->side, &hit, x) ? 1 : -1;
@@ -133,6 +134,19 @@ int bone_find_turned(const rigid *r, const distance_triangles *d, const uint8_t 
     const int failed = votes ? 0 : -1;
     free(votes);
     return failed;
+}
+
+int bone_triangles(distance_triangles *d, const rigid *r, const bool *is, const bone_view *from, const char *option,
+                   err *e)
+{
+    bool *is_turned = mem_array(r->surfaces + 1, sizeof *is_turned, "the rigid surfaces", e);
+    int failed = !is_turned || make_triangles(d, r, is, is_turned, option, e) || find_turned(r, d, from, is_turned, e);
+    if (!failed) {
+        distance_triangles_free(d);
+        failed = make_triangles(d, r, is, is_turned, option, e);
+    }
+    free(is_turned);
+    return failed ? -1 : 0;
 }
 
 /* ---- samples */

@@ -35,17 +35,21 @@ void bone_fields_free(bone_fields *f);
 /* In `is`, the rigid surfaces that the names between commas stand for. -1 with e filled, in the option's name. */
 int bone_surfaces(const rigid *r, const char *option, const char *text, bool *is, err *e);
 
-/* The triangles of these surfaces, turned where is_turned (of rigid surfaces) says. -1 with e filled where there is
- * none, or they face different sides. */
-int bone_triangles(distance_triangles *d, const rigid *r, const bool *is, const bool *is_turned, const char *option,
+/* Where the tissue is that bone is looked at from. */
+typedef struct bone_view {
+    const uint8_t *chosen; /* nodes: those that tell which side of the bone they are on */
+    const double *beside;  /* nodes x 3, m: bone_beside */
+    int64_t nodes;
+} bone_view;
+
+/* The triangles of these surfaces. Each surface faces the tissue beside the chosen nodes, by more than half of these,
+ * or, where it has none, as it is. d is zeroed, and to be freed all the same. -1 with e filled where there is no
+ * triangle, or they face different sides. */
+int bone_triangles(distance_triangles *d, const rigid *r, const bool *is, const bone_view *from, const char *option,
                    err *e);
 
 /* Of each node the mean of the middles of its elements (x 3, m): in the tissue. NULL with e filled. */
 double *bone_beside(const model *m, err *e);
-
-/* Which of the field's surfaces have the tissue beside the chosen nodes behind them, by more than half of these. */
-int bone_find_turned(const rigid *r, const distance_triangles *d, const uint8_t *chosen, int64_t nodes,
-                     const double *beside, bool *is_turned, err *e);
 
 /* The box around lattice corners from low to high, and BONE_BEYOND. */
 void bone_field_box(bone_field *f, const lattice *l, const int32_t low[3], const int32_t high[3]);

@@ -21,9 +21,8 @@ typedef struct slider {
     uint8_t *rigid;
     int32_t *anchor, *body; /* body: NULL without bodies */
     int64_t nodes;
-    uint8_t *mark;   /* nodes: 0, KEEPS or LIFTS */
-    double *beside;  /* nodes x 3, m: the mean of the middles of its elements */
-    bool *is_turned; /* rigid surfaces: whether their triangles face the bone */
+    uint8_t *mark;  /* nodes: 0, KEEPS or LIFTS */
+    double *beside; /* nodes x 3, m: the mean of the middles of its elements */
     pool *threads;
     err *e;
 } slider;
@@ -144,19 +143,15 @@ static int add_slides(const slider *s, const bone_fields *of, int64_t first, int
 
 /* ---- all */
 
-/* Samples a field, and finds which way its surfaces face. */
-static int fill_field(slider *s, bone_field *f, const uint8_t *chosen, slide_found *found, int64_t *far)
+static int fill_field(const slider *s, bone_field *f, const uint8_t *chosen, slide_found *found, int64_t *far)
 {
+    const bone_view from = {chosen, s->beside, s->nodes};
     distance_triangles d = {.tree = NULL};
-    int failed = bone_triangles(&d, s->r, f->is, s->is_turned, "--slide", s->e) ||
-                 bone_find_turned(s->r, &d, chosen, s->nodes, s->beside, s->is_turned, s->e);
-    distance_triangles_free(&d);
-    failed = failed || bone_triangles(&d, s->r, f->is, s->is_turned, "--slide", s->e) ||
-             bone_field_sample(f, &d, s->threads, s->e);
+    const int failed =
+        bone_triangles(&d, s->r, f->is, &from, "--slide", s->e) || bone_field_sample(f, &d, s->threads, s->e);
     if (!failed)
         found->worst = fmax(found->worst, find_worst(s, chosen, &d, far));
     distance_triangles_free(&d);
-    memset(s->is_turned, 0, (size_t)s->r->surfaces * sizeof *s->is_turned);
     return failed ? -1 : 0;
 }
 
@@ -226,8 +221,7 @@ static int begin(slider *s, lattice *grid)
     s->body = body ? body->i32 : NULL;
     s->nodes = position->rows;
     s->mark = mem_array(s->nodes, 1, "the nodes", s->e);
-    s->is_turned = mem_array(s->r->surfaces + 1, sizeof *s->is_turned, "the rigid surfaces", s->e);
-    return s->mark && s->is_turned ? 0 : -1;
+    return s->mark ? 0 : -1;
 }
 
 int slide_make(model *m, const rigid *r, const slide_options *o, pool *threads, bone_fields *fields, slide_found *found,
@@ -247,6 +241,5 @@ int slide_make(model *m, const rigid *r, const slide_options *o, pool *threads, 
     failed = failed || make_all(&s, fields, found, warnings);
     free(s.mark);
     free(s.beside);
-    free(s.is_turned);
     return failed ? -1 : 0;
 }

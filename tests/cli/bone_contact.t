@@ -5,14 +5,6 @@
 . "$(dirname "$0")/lib.sh"
 here=$(dirname "$0")
 
-get() {
-    sinew info --get "$1" "$2"
-}
-# below GOT MOST NAME
-below() {
-    check "$3 ($1)" awk -v got="$1" -v most="$2" 'BEGIN { exit !(got != "" && got * got < most * most) }'
-}
-
 # ---- what attach writes: a block, 20 x 20 x 10 mm, 3 mm above a plate that holds nothing of it
 cat >"$T/block.obj" <<'OBJ'
 g skin
@@ -75,7 +67,7 @@ tled-run -q -d cpu -m tissue.nu=.3 -m tissue.E=1e5 -g 0,0,-9.81 --ramp 0 --dampi
 is "$(awk -F '\t' 'NR == 1 { for (i = 1; i <= NF; i++) at[$i] = i; next } { e = $at["balance/J"]; most = e > most ? e : most; k = $at["kinetic/J"]; top = k > top ? k : top }
     END { print (most < .01 * top ? "kept" : most / top) }' "$T/fall.tsv")" kept "without damping no energy comes of it"
 
-# ---- the plate goes up by 8 mm and takes it along; the same bytes by other threads, in two parts and after a kill
+# ---- the plate goes up by 8 mm and takes it along; the same bytes by other threads and in two parts
 printf '0 gravity 0,0,-9.81\n0 move tray 0,0,0 0,0,0,1\n.1 move tray 0,0,0 0,0,0,1\n.2 move tray 0,0,8mm 0,0,0,1\n' >"$T/lift"
 lifted() { # OPTION...
     tled-run -q -d cpu -m tissue.nu=.3 --script "$T/lift" --damping 60 "$@" 2>/dev/null

@@ -98,6 +98,16 @@ fails() {
     fi
 }
 
+# get KEY FILE: what sinew info says of a model.
+get() {
+    sinew info --get "$1" "$2"
+}
+
+# below GOT MOST NAME: a number, |GOT| < MOST.
+below() {
+    check "$3 ($1)" awk -v got="$1" -v most="$2" 'BEGIN { exit !(got != "" && got * got < most * most) }'
+}
+
 # near GOT WANT RELTOL NAME: numbers, |GOT - WANT| <= RELTOL |WANT| (absolute where WANT is 0).
 near() {
     if awk -v got="$1" -v want="$2" -v tolerance="$3" 'BEGIN {

@@ -3,13 +3,6 @@
 # a slope; bytes, and what is refused.
 . "$(dirname "$0")/lib.sh"
 
-get() {
-    sinew info --get "$1" "$2"
-}
-# below GOT MOST NAME
-below() {
-    check "$3 ($1)" awk -v got="$1" -v most="$2" 'BEGIN { exit !(got != "" && got * got < most * most) }'
-}
 here=$(dirname "$0")
 
 # ---- what bind writes: two blocks of 40 x 40 x 20 mm that touch at z = 0

@@ -4,14 +4,6 @@
 # shellcheck disable=SC2046 # what prints numbers is split into these
 . "$(dirname "$0")/lib.sh"
 
-get() {
-    sinew info --get "$1" "$2"
-}
-# below GOT MOST NAME
-below() {
-    check "$3 ($1)" awk -v got="$1" -v most="$2" 'BEGIN { exit !(got != "" && got * got < most * most) }'
-}
-
 # ---- what attach writes: a block on a plate, 20 x 20 x 10 mm
 cat >"$T/block.obj" <<'OBJ'
 g skin

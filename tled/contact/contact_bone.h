@@ -1,5 +1,6 @@
-/* Which samples of skin are in bone that they may not enter (field.contact of the model; attach --contact): by its
- * distance fields, as nodes that slide (sliding_node.h). At x, with B the bone's motion at the end of the step,
+/* Finds the samples of skin that are in bone which they may not enter (field.contact of the model; attach --contact).
+ * The bone is known by distance fields, as it is to nodes that slide (sliding_node.h). At x, with B the bone's motion
+ * at the end of the step,
  *     g = phi(B^-1 x)/|grad phi|,   n = B grad phi/|grad phi|.
  */
 #ifndef SINEW_CONTACT_BONE_H

@@ -1,4 +1,4 @@
-/* Which samples of skin are nearer to other skin than at rest (self_contact.h). */
+/* Finds the samples of skin that are nearer to other skin than at rest (self_contact.h). */
 #ifndef SINEW_CONTACT_TOUCH_H
 #define SINEW_CONTACT_TOUCH_H
 

@@ -442,7 +442,7 @@ static void apply(self_contact_work *w, double dt)
     }
 }
 
-/* What friction has taken at a contact, once more is taken of the slip that is left: at most mu times what presses. */
+/* Adds the slip that is left to what friction takes at a contact, which is at most mu times what presses. */
 static void rub_touch(const self_contact_work *w, touch *t, double dt)
 {
     const lever l = lever_of(w, t);

@@ -161,7 +161,7 @@ static int64_t tiles_computed(const cuda_state *s)
 
 /* ---- resident tiles */
 
-/* Whether there is more to do after each pass (take_passes). */
+/* Tells whether the card has more to do after each pass (take_passes). */
 static bool has_more(const tled_problem *p)
 {
     return p->sliding || p->collider;
