@@ -1,8 +1,6 @@
 #include "tled/contact/contact_blend.h"
 
 #include "base/mem.h"
-#include "mesh/lattice.h"
-#include "tled/contact/deformed_place.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -18,12 +16,6 @@ typedef struct maker {
 } maker;
 
 /* ---- the maps of nodes */
-
-/* Corner c's part in its element's slope along an axis. */
-static double slope_of(const contact_blend *b, int c, int axis)
-{
-    return (lattice_vtk[c][axis] ? 1 : -1) / (4 * b->side[axis]);
-}
 
 /* The entry of the map that begins at `from` for a node's row, which may be a new one. */
 static int64_t entry_of(maker *k, int64_t from, int32_t row)
@@ -49,7 +41,7 @@ static int add_element(maker *k, int64_t from, int32_t element, double part)
         double *to = k->b->coefficient + 4 * i;
         to[0] += part / 8;
         for (int a = 0; a < 3; a++)
-            to[1 + a] += part * slope_of(k->b, c, a);
+            to[1 + a] += part * contact_blend_slope(k->b->side, c, a);
     }
     return 0;
 }
@@ -140,50 +132,31 @@ void contact_blend_free(contact_blend *b)
 
 /* ---- shares */
 
-/* Of corner c's map: part: its share of the place; from: the place less the map's own, m. */
-static void add_map(const contact_blend *b, int64_t element, int c, double part, const double from[3], double *share)
-{
-    const int32_t place = b->place[8 * element + c];
-    const uint8_t *index = b->index + (8 * element + c) * BLEND_NODES;
-    if (place < 0) {
-        for (int k = 0; k < 8; k++) {
-            double of = 1. / 8;
-            for (int a = 0; a < 3; a++)
-                of += slope_of(b, k, a) * from[a];
-            share[index[k]] += part * of;
-        }
-        return;
-    }
-    const double *of = b->coefficient + 4 * (int64_t)b->start[place];
-    for (int k = 0; k < b->start[place + 1] - b->start[place]; k++, of += 4)
-        share[index[k]] += part * (of[0] + (of[1] * from[0] + of[2] * from[1] + of[3] * from[2]));
-}
-
 void contact_blend_shares(const contact_blend *b, int64_t element, const double xi[3], double share[BLEND_MOST])
 {
-    double nearest[3], part[8];
-    for (int a = 0; a < 3; a++)
-        nearest[a] = fmin(fmax(xi[a], 0), 1);
-    deformed_shares(nearest, part);
+    double part[8];
+    contact_blend_parts(xi, part);
     memset(share, 0, b->count[element] * sizeof *share);
     for (int c = 0; c < 8; c++) {
+        const uint8_t *index = b->index + (8 * element + c) * BLEND_NODES;
+        const int count = contact_blend_entries(b, element, c);
         double from[3];
-        for (int a = 0; a < 3; a++)
-            from[a] = b->side[a] * (xi[a] - (b->place[8 * element + c] < 0 ? .5 : lattice_vtk[c][a]));
-        if (part[c] != 0)
-            add_map(b, element, c, part[c], from, share);
+        if (part[c] == 0)
+            continue;
+        contact_blend_from(b, element, c, xi, from);
+        for (int k = 0; k < count; k++)
+            share[index[k]] += part[c] * contact_blend_entry(b, element, c, k, from);
     }
 }
 
 int contact_blend_lever(const contact_blend *b, int64_t element, const double xi[3], int32_t node[BLEND_MOST],
                         double share[BLEND_MOST])
 {
-    static const double least = 1e-9;
     double all[BLEND_MOST];
     int count = 0;
     contact_blend_shares(b, element, xi, all);
     for (int k = 0; k < b->count[element]; k++)
-        if (fabs(all[k]) > least) {
+        if (fabs(all[k]) > BLEND_LEAST) {
             node[count] = b->node[BLEND_MOST * element + k];
             share[count++] = all[k];
         }

@@ -6,11 +6,15 @@
 #define SINEW_CONTACT_BLEND_H
 
 #include "mesh/motion.h"
+#include "tled/contact/deformed_place.h"
 
 enum {
     BLEND_NODES = 27, /* the most of a node's map */
     BLEND_MOST = 96   /* and of an element's eight, of which slits may have more than 64 */
 };
+
+/* Shares that are worth having are above this. */
+#define BLEND_LEAST 1e-9
 
 typedef struct contact_blend {
     double side[3];   /* m: of an element */
@@ -30,6 +34,55 @@ typedef struct contact_blend {
 int contact_blend_make(contact_blend *b, const motion *of, const int32_t *element, int64_t elements,
                        const int32_t *node, const int32_t *row, const double side[3], err *e);
 void contact_blend_free(contact_blend *b);
+
+/* ---- the maps' shares, one source for every executor */
+
+/* Of corner c's map of an element: how many nodes it has. */
+DEFORMED_FUNCTION int contact_blend_entries(const contact_blend *b, int64_t element, int c)
+{
+    const int32_t place = b->place[8 * element + c];
+    return place < 0 ? 8 : b->start[place + 1] - b->start[place];
+}
+
+/* A place in the element, 0 to 1 along each axis in it, from that of the map, m. */
+DEFORMED_FUNCTION void contact_blend_from(const contact_blend *b, int64_t element, int c, const double *xi,
+                                          double *from)
+{
+    const bool own = b->place[8 * element + c] < 0;
+    for (int a = 0; a < 3; a++)
+        from[a] = b->side[a] * (xi[a] - (own ? .5 : deformed_corner(c, a)));
+}
+
+/* Corner k's part in its element's slope along an axis, 1/m. */
+DEFORMED_FUNCTION double contact_blend_slope(const double *side, int k, int axis)
+{
+    return (deformed_corner(k, axis) ? 1 : -1) / (4 * side[axis]);
+}
+
+/* The share of node k of the map there. */
+DEFORMED_FUNCTION double contact_blend_entry(const contact_blend *b, int64_t element, int c, int k, const double *from)
+{
+    const int32_t place = b->place[8 * element + c];
+    double share = 1. / 8;
+    if (place >= 0) {
+        const double *of = b->coefficient + 4 * ((int64_t)b->start[place] + k);
+        return of[0] + (of[1] * from[0] + of[2] * from[1] + of[3] * from[2]);
+    }
+    for (int a = 0; a < 3; a++)
+        share += contact_blend_slope(b->side, k, a) * from[a];
+    return share;
+}
+
+/* The parts of the eight maps at a place; beyond the element, as at the nearest in it. */
+DEFORMED_FUNCTION void contact_blend_parts(const double *xi, double *part)
+{
+    double nearest[3];
+    for (int a = 0; a < 3; a++)
+        nearest[a] = fmin(fmax(xi[a], 0.), 1.);
+    deformed_shares(nearest, part);
+}
+
+/* ---- all of a place's */
 
 /* Of a place in an element's row, 0 to 1 along each axis in it: fills share, of b->count of nodes. */
 void contact_blend_shares(const contact_blend *b, int64_t element, const double xi[3], double share[BLEND_MOST]);

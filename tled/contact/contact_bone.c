@@ -1,20 +1,9 @@
 #include "tled/contact/contact_bone.h"
 
-#include "tled/contact/contact_near.h"
-#include "tled/contact/contact_touch.h"
-
 #include <math.h>
 #include <string.h>
 
 enum { SAMPLES_CHUNK = 64 };
-
-/* In shortest sides: what is deeper has come another way. */
-static const double most_deep = 1;
-/* Skin touches bone that it faces, by the cosine between its normal and the bone's, or where its own is not to be
- * trusted, at its edges. */
-static const double facing = -.3, sure = .25;
-/* A sample moves further than nodes where it is extrapolated: a share of what is clear. */
-static const double spare_way = 1. / 8;
 
 /* ---- the bones' motions */
 
@@ -22,24 +11,6 @@ static sliding_bone bone_at(const self_contact_work *w, int32_t which, const dou
 {
     static const sliding_bone rest = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {0, 0, 0}};
     return value ? sliding_bone_at(w->c->bones, which, value) : rest;
-}
-
-/* The most that a corner of a field's box has moved since the last step. */
-static double most_moved(const sliding_field *f, const double spacing[3], const sliding_bone *from,
-                         const sliding_bone *to)
-{
-    double most = 0;
-    for (int c = 0; c < 8; c++) {
-        double where[3], before[3], after[3], square = 0;
-        for (int a = 0; a < 3; a++)
-            where[a] = f->first[a] + (c >> a & 1 ? spacing[a] * (f->samples[a] - 1) : 0);
-        sliding_move(from, where, before);
-        sliding_move(to, where, after);
-        for (int a = 0; a < 3; a++)
-            square += (after[a] - before[a]) * (after[a] - before[a]);
-        most = fmax(most, square);
-    }
-    return sqrt(most);
 }
 
 static void move_bones(self_contact_work *w, const double *was, const double *is)
@@ -50,48 +21,13 @@ static void move_bones(self_contact_work *w, const double *was, const double *is
         const int32_t which = w->c->solid[k];
         const sliding_bone next = bone_at(w, which, is);
         at->was = bone_at(w, which, was);
-        at->drift += most_moved(&s->field[which], s->ground.spacing, at->is_placed ? &at->is : &at->was, &next);
+        at->drift += contact_bone_way(&s->field[which], s->ground.spacing, at->is_placed ? &at->is : &at->was, &next);
         at->is = next;
         at->is_placed = true;
     }
 }
 
 /* ---- a sample */
-
-/* Where a sample is to a bone: its depth as t->off. false: beyond its field, or nowhere near it. clear, m: how far it
- * may still go. */
-static bool find_touch(const self_contact_work *w, int64_t sample, int32_t k, const double x[3], touch *t,
-                       double *clear)
-{
-    const sliding_ground *g = &w->c->bones->ground;
-    const contact_solid *at = &w->solid[k];
-    const int32_t which = w->c->solid[k];
-    double where[3], slope[3], before[3], after[3], own[3], dot = 0;
-    for (int a = 0; a < 3; a++) {
-        where[a] = 0;
-        for (int i = 0; i < 3; i++)
-            where[a] += at->is.turn[i][a] * (x[i] - at->is.to[i]);
-    }
-    *clear = w->c->shortest;
-    if (sliding_beyond(g, which, where))
-        return false;
-    const double phi = sliding_distance(g, which, where, slope), length = sliding_length(slope);
-    t->off = phi / fmax(length, SLIDING_SLOPE) - w->c->bone_rest[k * w->c->samples + sample];
-    *clear = fmax(t->off, 0);
-    if (!(t->off < 0) || t->off < -most_deep * w->c->shortest || !(length > 0))
-        return false;
-    for (int a = 0; a < 3; a++)
-        t->normal[a] =
-            (at->is.turn[a][0] * slope[0] + at->is.turn[a][1] * slope[1] + at->is.turn[a][2] * slope[2]) / length;
-    sliding_move(&at->was, where, before);
-    sliding_move(&at->is, where, after);
-    const double trusted = contact_normal(w, sample, own);
-    for (int a = 0; a < 3; a++) {
-        t->carried[a] = after[a] - before[a];
-        dot += own[a] * t->normal[a];
-    }
-    return dot < facing || trusted < sure;
-}
 
 /* The bone that a sample is deepest in, to the sample's place in w->bone_touch. */
 static void find_deepest(const self_contact_work *w, int64_t sample)
@@ -107,11 +43,13 @@ static void find_deepest(const self_contact_work *w, int64_t sample)
         if (drift < *until)
             continue;
         if (!placed)
-            contact_place(w, sample, x);
+            contact_place(w->c, w->x, sample, x);
         placed = true;
-        if (find_touch(w, sample, k, x, &t, &clear) && (!deepest->sides || t.off < deepest->off))
+        if (contact_touches_bone(w->c, w->x, x, &w->c->bones->ground, w->c->solid[k], &w->solid[k].was, &w->solid[k].is,
+                                 w->c->bone_rest[k * w->c->samples + sample], &t, &clear) &&
+            (!deepest->sides || t.off < deepest->off))
             *deepest = t;
-        *until = clear > 0 ? drift + spare_way * clear : 0;
+        *until = clear > 0 ? drift + CONTACT_SPARE * clear : 0;
     }
 }
 

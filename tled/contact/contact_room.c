@@ -18,10 +18,14 @@ void self_contact_room_free(self_contact_work *w)
     free(w->change);
     free(w->sum);
     free(w->about);
-    free(w->sampled);
-    free(w->middle);
-    free(w->count);
-    free(w->candidate);
+    free(w->table.sampled);
+    free(w->table.middle);
+    free(w->table.low);
+    free(w->table.high);
+    free(w->table.count);
+    free(w->table.candidate);
+    free(w->table.first);
+    free(w->table.next);
     free(w->near);
     free(w->until);
     free(w->touch);
@@ -30,11 +34,6 @@ void self_contact_room_free(self_contact_work *w)
     free(w->solid);
     free(w->bone_until);
     free(w->bone_touch);
-    free(w->start);
-    free(w->of);
-    free(w->cell);
-    free(w->low);
-    free(w->high);
     free(w);
 }
 
@@ -52,7 +51,8 @@ self_contact_work *contact_room_make(const tled_problem *p, const self_contact *
         return NULL;
     w->p = p;
     w->c = c;
-    w->cells = hash_size(c->elements);
+    contact_table *t = &w->table;
+    t->cells = hash_size(c->elements);
     w->place_most = c->blend ? BLEND_MOST : 8;
     if ((w->u = mem_array(c->nodes, 3 * sizeof *w->u, what, e)) &&
         (w->v = mem_array(c->nodes, 3 * sizeof *w->v, what, e)) &&
@@ -61,10 +61,14 @@ self_contact_work *contact_room_make(const tled_problem *p, const self_contact *
         (w->change = mem_array(c->nodes, 3 * sizeof *w->change, what, e)) &&
         (w->sum = mem_array(c->nodes, sizeof *w->sum, what, e)) &&
         (w->about = mem_array(c->nodes, sizeof *w->about, what, e)) &&
-        (w->sampled = mem_array(c->elements, 6 * sizeof *w->sampled, what, e)) &&
-        (w->middle = mem_array(c->elements, 3 * sizeof *w->middle, what, e)) &&
-        (w->count = mem_array(c->elements, sizeof *w->count, what, e)) &&
-        (w->candidate = mem_array(c->elements, CANDIDATES * sizeof *w->candidate, what, e)) &&
+        (t->sampled = mem_array(c->elements, 6 * sizeof *t->sampled, what, e)) &&
+        (t->middle = mem_array(c->elements, 3 * sizeof *t->middle, what, e)) &&
+        (t->low = mem_array(c->elements, 3 * sizeof *t->low, what, e)) &&
+        (t->high = mem_array(c->elements, 3 * sizeof *t->high, what, e)) &&
+        (t->count = mem_array(c->elements, sizeof *t->count, what, e)) &&
+        (t->candidate = mem_array(c->elements, CONTACT_CANDIDATES * sizeof *t->candidate, what, e)) &&
+        (t->first = mem_array(t->cells, sizeof *t->first, what, e)) &&
+        (t->next = mem_array(c->elements, sizeof *t->next, what, e)) &&
         (w->near = mem_array(c->samples, sizeof *w->near, what, e)) &&
         (w->until = mem_array(c->samples, sizeof *w->until, what, e)) &&
         (w->touch = mem_array(c->samples, 2 * sizeof *w->touch, what, e)) &&
@@ -72,12 +76,7 @@ self_contact_work *contact_room_make(const tled_problem *p, const self_contact *
         (w->place_share = mem_array(c->samples, (size_t)w->place_most * sizeof *w->place_share, what, e)) &&
         (w->solid = mem_array(c->solids, sizeof *w->solid, what, e)) &&
         (w->bone_until = mem_array(c->solids * c->samples, sizeof *w->bone_until, what, e)) &&
-        (w->bone_touch = mem_array(c->solids ? c->samples : 0, sizeof *w->bone_touch, what, e)) &&
-        (w->start = mem_array(w->cells + 1, sizeof *w->start, what, e)) &&
-        (w->of = mem_array(c->elements, sizeof *w->of, what, e)) &&
-        (w->cell = mem_array(c->elements, sizeof *w->cell, what, e)) &&
-        (w->low = mem_array(c->elements, 3 * sizeof *w->low, what, e)) &&
-        (w->high = mem_array(c->elements, 3 * sizeof *w->high, what, e)))
+        (w->bone_touch = mem_array(c->solids ? c->samples : 0, sizeof *w->bone_touch, what, e)))
         return w;
     self_contact_room_free(w);
     return NULL;
@@ -86,6 +85,12 @@ self_contact_work *contact_room_make(const tled_problem *p, const self_contact *
 self_contact_work *self_contact_room(const tled_problem *p, err *e)
 {
     return contact_room_make(p, p->self_contact, e);
+}
+
+static int64_t contact_table_bytes(const self_contact *c, int64_t cells)
+{
+    return c->elements * (15 * (int64_t)sizeof(double) + (CONTACT_CANDIDATES + 2) * (int64_t)sizeof(int32_t)) +
+           cells * (int64_t)sizeof(int32_t);
 }
 
 int64_t self_contact_bytes(const self_contact_work *w)
@@ -97,8 +102,7 @@ int64_t self_contact_bytes(const self_contact_work *w)
            c->nodes * (16 * (int64_t)sizeof(double) + (int64_t)sizeof(int32_t)) +
            c->samples *
                ((2 + (c->solids > 0)) * (int64_t)sizeof(touch) + 8 * (1 + c->solids) + (int64_t)sizeof(int32_t)) +
-           c->elements * (15 * (int64_t)sizeof(double) + (CANDIDATES + 3) * (int64_t)sizeof(int32_t)) +
-           (w->cells + 1) * (int64_t)sizeof(int32_t);
+           contact_table_bytes(c, w->table.cells);
 }
 
 double *self_contact_displacement(self_contact_work *w)

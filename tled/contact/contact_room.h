@@ -4,24 +4,7 @@
 #ifndef SINEW_CONTACT_ROOM_H
 #define SINEW_CONTACT_ROOM_H
 
-#include "tled/contact/self_contact.h"
-
-enum { CANDIDATES = 64 }; /* of an element: those that its samples may be in */
-
-/* A sample in an element that it is no part of, or in bone. */
-typedef struct touch {
-    int32_t sample, element; /* rows; element: -1 in bone */
-    int sides;               /* that move: the sample's, and the place's, unless that is bone; 0: it touches nothing */
-    double carried[3];       /* m: by which bone moves there in the step; else 0 */
-    int count;               /* of the place's nodes: */
-    int32_t *node;           /* their rows, and shares: of the room's */
-    double *share;
-    double normal[3], off; /* off: g - g0, m */
-    double part[2];        /* of the sides: they sum to 1 */
-    double width;          /* no less than the sum of what units of lambda at all contacts move this one by */
-    double fresh, lambda;  /* beta; m */
-    double rubbed[3];      /* m/s: by friction */
-} touch;
+#include "tled/contact/contact_maths.h"
 
 /* Bone that skin may not enter. */
 typedef struct contact_solid {
@@ -41,11 +24,9 @@ struct self_contact_work {
     int32_t *about; /* nodes: those with a contact, in the order of these */
     int32_t abouts;
     bool is_listed;
-    double *sampled;    /* elements x 6, m: the box of the samples of each; of none: low above high */
-    double *middle;     /* elements x 3: the skin's normal at their middles */
-    int32_t *count;     /* elements: those that their samples may be in */
-    int32_t *candidate; /* elements x CANDIDATES: these, ascending */
-    int32_t *near;      /* samples that have candidates */
+    contact_table table;
+    double side;   /* m: of the table's cells */
+    int32_t *near; /* samples that have candidates */
     int64_t nears;
     double drift;  /* m: how far the fastest node has come since the start, step by step */
     double *until; /* samples, m: by what drift one may touch */
@@ -58,11 +39,6 @@ struct self_contact_work {
     contact_solid *solid; /* solids */
     double *bone_until;   /* solids x samples: as until */
     touch *bone_touch;    /* samples: what touches bone */
-    /* The table: elements by the cells that their middles are in. */
-    int64_t cells; /* a power of two */
-    int32_t *start, *of, *cell;
-    double *low, *high; /* elements x 3, m */
-    double side;        /* m: of a cell, no less than half an element's longest side and a margin */
 };
 
 /* c: that of the problem, or one that is being made. NULL with e filled. */

@@ -8,30 +8,6 @@
 
 enum { SAMPLES_CHUNK = 32 };
 
-/* Skin touches skin that faces it: cosine between the normals. What comes in by the side of an edge is left alone until
- * it is nearer to what it faces, or skin would catch on every edge that it slides under. */
-static const double facing = -.3;
-/* Elements that have a neighbour in common, about the end of a slit, are nearly one piece: they touch where they face
- * each other, and not deeper than this, in shortest sides; others not deeper than that. */
-static const double near_facing = -.5, near_deep = .25, most_deep = .5;
-
-/* How far a normal is to be trusted, 0 to 1: a distance grows by 1 per m, but at an edge, where the normals of two
- * faces are mixed, what is trilinear grows by less. */
-static double certainty(const self_contact_work *w, int32_t element, const double xi[3])
-{
-    const double slope = deformed_rest_slope(xi, &w->c->distance[element], w->p->side);
-    return slope < 1 ? slope * slope : 1;
-}
-
-double contact_normal(const self_contact_work *w, int64_t sample, double normal[3])
-{
-    const int32_t element = w->c->sample_element[sample];
-    const deformed_map d = contact_map(w, element);
-    const double *xi = w->c->place + 3 * sample;
-    deformed_slope(&d, xi, &w->c->distance[element], normal);
-    return certainty(w, element, xi);
-}
-
 /* A candidate, and how far its middle is from a sample, squared. */
 typedef struct nearness {
     double square;
@@ -42,12 +18,12 @@ typedef struct nearness {
 static int sort_candidates(const self_contact_work *w, int64_t sample, const double x[3], nearness *to)
 {
     const int32_t element = w->c->sample_element[sample];
-    const int32_t *list = w->candidate + CANDIDATES * (int64_t)element;
+    const int32_t *list = w->table.candidate + CONTACT_CANDIDATES * (int64_t)element;
     int count = 0;
-    for (int32_t k = 0; k < w->count[element]; k++) {
-        if (!contact_in_box(w, list[k], x))
+    for (int32_t k = 0; k < w->table.count[element]; k++) {
+        if (!contact_in_box(&w->table, list[k], x))
             continue;
-        const deformed_map d = contact_map(w, list[k]);
+        const deformed_map d = contact_map(w->c, w->x, list[k]);
         const double square = deformed_from_middle(&d, x);
         int at = count++;
         for (; at > 0 && to[at - 1].square > square; at--)
@@ -61,11 +37,10 @@ static int sort_candidates(const self_contact_work *w, int64_t sample, const dou
  * to second order in what the two differ by. */
 static bool blend_place(const self_contact_work *w, int32_t element, const double x[3], double xi[3])
 {
-    enum { TURNS = 2 };
     const contact_blend *b = w->c->blend;
     const int32_t *node = b->node + BLEND_MOST * (int64_t)element;
-    const deformed_map d = contact_map(w, element);
-    for (int turn = 0; turn < TURNS; turn++) {
+    const deformed_map d = contact_map(w->c, w->x, element);
+    for (int turn = 0; turn < CONTACT_TURNS; turn++) {
         double share[BLEND_MOST], way[3] = {x[0], x[1], x[2]};
         contact_blend_shares(b, element, xi, share);
         for (int k = 0; k < b->count[element]; k++)
@@ -92,13 +67,13 @@ static void take_shares(const self_contact_work *w, const double place[3], touch
 /* The element that holds a sample, or else the one that it is least outside of; -1: none within CONTACT_BEYOND. */
 static int32_t find_element(const self_contact_work *w, int64_t sample, const double x[3], double place[3])
 {
-    nearness list[CANDIDATES];
+    nearness list[CONTACT_CANDIDATES];
     const int count = sort_candidates(w, sample, x, list);
     double least = CONTACT_BEYOND;
     int32_t found = -1;
     for (int k = 0; k < count && least > 0; k++) {
         double xi[3];
-        const deformed_map d = contact_map(w, list[k].element);
+        const deformed_map d = contact_map(w->c, w->x, list[k].element);
         if (!deformed_place(&d, x, xi))
             continue;
         const double outside = deformed_outside(xi);
@@ -111,54 +86,22 @@ static int32_t find_element(const self_contact_work *w, int64_t sample, const do
     return found;
 }
 
-/* Of two sides that face each other the normal between, by how far each is to be trusted: skin that slides under an
- * edge does not catch on it. */
-static void turn_normal(double normal[3], double sure, const double own[3], double own_sure)
-{
-    double square = 0;
-    for (int a = 0; a < 3; a++) {
-        normal[a] = sure * normal[a] - own_sure * own[a];
-        square += normal[a] * normal[a];
-    }
-    for (int a = 0; a < 3; a++)
-        normal[a] /= square > 0 ? sqrt(square) : 1;
-}
-
 /* Tells whether a sample is nearer to other skin than at rest. If it is not, `clear` gets how far it may still go, m.
  */
 static bool find_touch(const self_contact_work *w, int64_t sample, touch *t, double *clear)
 {
-    const self_contact *c = w->c;
-    double x[3], place[3], own[3], dot = 0;
-    contact_place(w, sample, x);
+    double x[3], place[3];
+    contact_place(w->c, w->x, sample, x);
     t->sample = (int32_t)sample;
     t->sides = 2;
     t->element = find_element(w, sample, x, place);
-    *clear = CONTACT_MARGIN * c->shortest;
-    if (t->element < 0 || (c->blend && !blend_place(w, t->element, x, place)))
-        return false;
-    const bool near = contact_have_neighbour(w, c->sample_element[sample], t->element);
-    const deformed_factors *distance = &c->distance[t->element];
-    const deformed_map d = contact_map(w, t->element);
-    const double slope = deformed_slope(&d, place, distance, t->normal);
-    if (!(slope > 0))
-        return false;
-    t->off = deformed_value(distance, place) / slope - c->rest[sample];
-    *clear = fmin(fmax(t->off, 0), *clear);
-    if (!(t->off < 0) || t->off < -(near ? near_deep : most_deep) * c->shortest)
-        return false;
-    const double sure = contact_normal(w, sample, own), other = certainty(w, t->element, place);
-    for (int a = 0; a < 3; a++)
-        dot += own[a] * t->normal[a];
-    turn_normal(t->normal, other, own, sure);
-    if (!(dot < (near ? near_facing : facing)))
+    *clear = CONTACT_MARGIN * w->c->shortest;
+    if (t->element < 0 || (w->c->blend && !blend_place(w, t->element, x, place)) ||
+        !contact_touches_at(w->c, w->x, place, t, clear))
         return false;
     take_shares(w, place, t);
     return true;
 }
-
-/* A sample and what it may touch both move, and by more where they are extrapolated: a share of what is clear. */
-static const double spare_way = 1. / 8;
 
 static void touch_work(void *context, int64_t chunk, int64_t from, int64_t to)
 {
@@ -172,7 +115,7 @@ static void touch_work(void *context, int64_t chunk, int64_t from, int64_t to)
         if (w->drift < w->until[sample] || !find_touch(w, sample, &w->touch[i], &clear))
             w->touch[i].element = -1;
         if (clear > 0)
-            w->until[sample] = w->drift + spare_way * clear;
+            w->until[sample] = w->drift + CONTACT_SPARE * clear;
     }
 }
 

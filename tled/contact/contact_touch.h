@@ -7,7 +7,4 @@
 /* Fills w->touch, in the order of the samples, where the displacements have nodes. */
 void contact_touches(self_contact_work *w, pool *threads);
 
-/* The skin's normal at a sample, where it is: 0 where it has none. Returns how far it is to be trusted, 0 to 1. */
-double contact_normal(const self_contact_work *w, int64_t sample, double normal[3]);
-
 #endif

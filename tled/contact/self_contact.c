@@ -14,10 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { PASSES = 4, RING_MOST = 512 }; /* nodes about an element, with those that come again */
-
-/* Of an element's shortest side: what depth from before is taken back in a step at most. */
-static const double recovered = 1e-3;
+enum { RING_MOST = 512 }; /* nodes about an element, with those that come again */
 
 /* ---- from the model */
 
@@ -130,6 +127,22 @@ static int take_elements(reader *r, const int32_t *rank)
         weights_shares(r->weight + 3 * i, share);
         deformed_place_of_shares(share, c->place + 3 * i);
     }
+    return 0;
+}
+
+/* Samples by elements. */
+static int order_samples(self_contact *c, err *e)
+{
+    c->sample_start = mem_array(c->elements + 1, sizeof *c->sample_start, "the skin", e);
+    c->sample = c->sample_start ? mem_array(c->samples, sizeof *c->sample, "the skin", e) : NULL;
+    if (!c->sample)
+        return -1;
+    for (int64_t i = 0; i < c->samples; i++)
+        c->sample_start[c->sample_element[i]]++;
+    for (int64_t k = 0; k < c->elements; k++)
+        c->sample_start[k + 1] += c->sample_start[k];
+    for (int64_t i = c->samples; i-- > 0;)
+        c->sample[--c->sample_start[c->sample_element[i]]] = (int32_t)i;
     return 0;
 }
 
@@ -265,8 +278,8 @@ static int read_all(reader *r, const model *m)
 {
     int32_t *rank = mem_array(r->p->elements, sizeof *rank, "the skin", r->e);
     const int failed = !rank || find_arrays(r, m) || list_elements(r, rank) || take_elements(r, rank) ||
-                       make_rings(r, rank) || (model_find(m, "contact.blended") && make_blend(r, rank)) ||
-                       make_levers(r);
+                       order_samples(r->c, r->e) || make_rings(r, rank) ||
+                       (model_find(m, "contact.blended") && make_blend(r, rank)) || make_levers(r);
     free(rank);
     free(r->row);
     return failed ? -1 : 0;
@@ -278,6 +291,8 @@ void self_contact_free(self_contact *c)
     free(c->ring);
     free(c->node);
     free(c->sample_element);
+    free(c->sample_start);
+    free(c->sample);
     free(c->place);
     free(c->lever_start);
     free(c->lever_node);
@@ -347,9 +362,7 @@ static void find_parts(const self_contact_work *w, touch *t)
     for (int side = 0; side < l.sides; side++)
         for (int k = 0; k < l.count[side]; k++)
             mass[side] += l.share[side][k] * w->p->mass[w->c->node[l.node[side][k]]];
-    const double all = mass[0] + mass[1];
-    t->part[0] = t->sides == 1 ? 1 : mass[0] > 0 && mass[1] > 0 ? mass[1] / all : .5;
-    t->part[1] = 1 - t->part[0];
+    contact_part(t, mass);
 }
 
 /* The shares of the contacts at each node; and the nodes that have any. */
@@ -379,22 +392,13 @@ static void find_width(const self_contact_work *w, touch *t)
                                 : 0;
 }
 
-static double dot_of(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 static void begin_touch(const self_contact_work *w, touch *t, double dt)
 {
     const lever l = lever_of(w, t);
     double speed[3];
     find_width(w, t);
     relative(&l, w->v, speed);
-    const double came = fmin(fmax(dot_of(t->carried, t->normal) - dot_of(speed, t->normal) * dt, 0), -t->off);
-    t->off = fmax(t->off, -came - recovered * w->c->shortest);
-    t->fresh = came / -t->off;
-    t->lambda = 0;
-    t->rubbed[0] = t->rubbed[1] = t->rubbed[2] = 0;
+    contact_begin(w->c, t, speed, dt);
 }
 
 static void forget_changes(self_contact_work *w)
@@ -407,15 +411,13 @@ static void forget_changes(self_contact_work *w)
 static void solve(self_contact_work *w)
 {
     forget_changes(w);
-    for (int pass = 0; pass < PASSES; pass++) {
+    for (int pass = 0; pass < CONTACT_PASSES; pass++) {
         for (int64_t i = 0; i < w->touches; i++) {
             touch *t = &w->touch[i];
             const lever l = lever_of(w, t);
             double way[3];
-            if (!(t->width > 0))
-                continue;
             relative(&l, w->change, way);
-            t->lambda = fmax(t->lambda - (t->off + dot_of(way, t->normal)) / t->width, 0);
+            contact_press(t, way);
         }
         forget_changes(w);
         for (int64_t i = 0; i < w->touches; i++) {
@@ -442,30 +444,22 @@ static void apply(self_contact_work *w, double dt)
     }
 }
 
-/* Adds the slip that is left to what friction takes at a contact, which is at most mu times what presses. */
 static void rub_touch(const self_contact_work *w, touch *t, double dt)
 {
     const lever l = lever_of(w, t);
-    double slip[3], more[3];
-    if (!(t->width > 0))
-        return;
-    relative(&l, w->v, slip);
+    double speed[3], more[3];
+    relative(&l, w->v, speed);
     relative(&l, w->change, more);
     for (int a = 0; a < 3; a++)
-        slip[a] += more[a] - t->carried[a] / dt;
-    const double along = dot_of(slip, t->normal);
-    for (int a = 0; a < 3; a++)
-        t->rubbed[a] -= (slip[a] - along * t->normal[a]) / t->width;
-    const double size = sqrt(dot_of(t->rubbed, t->rubbed)), most = w->c->friction * t->fresh * t->lambda / dt;
-    for (int a = 0; a < 3; a++)
-        t->rubbed[a] *= size > most ? most / size : 1;
+        speed[a] += more[a];
+    contact_rub(w->c, t, speed, dt);
 }
 
 /* Friction takes from the velocity along the skin, and from the way in the step. */
 static void rub(self_contact_work *w, double dt)
 {
     forget_changes(w);
-    for (int pass = 0; pass < PASSES; pass++) {
+    for (int pass = 0; pass < CONTACT_PASSES; pass++) {
         for (int64_t i = 0; i < w->touches; i++)
             rub_touch(w, &w->touch[i], dt);
         forget_changes(w);
@@ -514,7 +508,7 @@ static void find_bone_rest(self_contact *c, const self_contact_work *w)
     for (int32_t k = 0; k < c->solids; k++)
         for (int64_t i = 0; i < c->samples; i++) {
             double x[3], slope[3];
-            contact_place(w, i, x);
+            contact_place(c, w->x, i, x);
             if (sliding_beyond(&c->bones->ground, c->solid[k], x))
                 continue;
             const double phi = sliding_distance(&c->bones->ground, c->solid[k], x, slope);
@@ -570,6 +564,7 @@ int self_contact_make(self_contact *c, tled_problem *p, const model *m, sliding 
         return err_set(e, NULL, 0, "skin touches itself in a model without a lattice; expected one of voxels");
     if (read_all(&r, m))
         return -1;
+    memcpy(c->side, p->side, sizeof c->side);
     c->shortest = fmin(p->side[0], fmin(p->side[1], p->side[2]));
     if (find_solids(c, bones, e) || find_rest(c, p, threads, e))
         return -1;

@@ -40,6 +40,7 @@ typedef struct self_contact {
     int64_t samples, elements, nodes; /* elements: that samples may be in; nodes: of these, and what moves samples */
     int32_t *node;                    /* nodes: of the model; all is owned */
     int32_t *sample_element;          /* samples: rows of `element` */
+    int32_t *sample_start, *sample;   /* elements + 1; samples by the element that each is bound to, ascending */
     double *place;                    /* samples x 3: in its element, 0 to 1 along each axis in it */
     int32_t *lever_start;             /* samples + 1: of what moves each: */
     int32_t *lever_node;              /* rows of `node` */
@@ -49,7 +50,7 @@ typedef struct self_contact {
     deformed_factors *distance;       /* elements, m: phi */
     double *rest;                     /* samples, m: g0, at most 0 */
     int32_t *ring_start, *ring;       /* elements + 1; nodes of the elements about each, ascending */
-    double shortest;                  /* m: the shortest side of an element */
+    double side[3], shortest;         /* m: an element's sides, and the shortest of them */
     struct sliding *bones;            /* whose fields: */
     int32_t *solid;                   /* solids: those that skin may not enter */
     int32_t solids;
