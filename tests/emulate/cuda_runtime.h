@@ -107,6 +107,10 @@ static inline int __popc(unsigned x)
     return __builtin_popcount(x);
 }
 int atomicMin(int *at, int value);
+int atomicAdd(int *at, int value);
+int atomicExch(int *at, int value);
+unsigned long long atomicAdd(unsigned long long *at, unsigned long long value);
+unsigned long long atomicMax(unsigned long long *at, unsigned long long value);
 
 /* ---- of the host */
 
@@ -200,6 +204,10 @@ cudaError_t cudaGetLastError();
 cudaError_t cudaDeviceSynchronize();
 cudaError_t cudaMemcpyAsync(void *to, const void *from, size_t size, cudaMemcpyKind kind, cudaStream_t stream);
 cudaError_t cudaStreamCreateWithFlags(cudaStream_t *stream, unsigned flags);
+static inline cudaError_t cudaStreamCreateWithPriority(cudaStream_t *stream, unsigned flags, int)
+{
+    return cudaStreamCreateWithFlags(stream, flags);
+}
 cudaError_t cudaStreamSynchronize(cudaStream_t stream);
 cudaError_t cudaStreamWaitEvent(cudaStream_t stream, cudaEvent_t event, unsigned flags = 0);
 cudaError_t cudaStreamDestroy(cudaStream_t stream);

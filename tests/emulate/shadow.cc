@@ -317,13 +317,43 @@ void __tsan_init()
 }
 }
 
+/* One access; f: from what is there to what is to be. Returns what was. */
+template <class T, class F> static T atomically(T *at, F f)
+{
+    touch(at, sizeof *at, true, true);
+    const T old = *at;
+    *at = f(old);
+    return old;
+}
+
 int atomicMin(int *at, int value)
 {
     HERE();
-    touch(at, sizeof *at, true, true);
-    const int old = *at;
-    *at = value < old ? value : old;
-    return old;
+    return atomically(at, [&](int old) { return std::min(old, value); });
+}
+
+int atomicAdd(int *at, int value)
+{
+    HERE();
+    return atomically(at, [&](int old) { return old + value; });
+}
+
+int atomicExch(int *at, int value)
+{
+    HERE();
+    return atomically(at, [&](int) { return value; });
+}
+
+unsigned long long atomicAdd(unsigned long long *at, unsigned long long value)
+{
+    HERE();
+    return atomically(at, [&](unsigned long long old) { return old + value; });
+}
+
+unsigned long long atomicMax(unsigned long long *at, unsigned long long value)
+{
+    HERE();
+    return atomically(at, [&](unsigned long long old) { return std::max(old, value); });
 }
 
 /* ---- shared memory by address */

@@ -551,6 +551,7 @@ int main(void)
     test_cuts(more);
     test_sliding(2 * more);
     test_pressing(2 * more);
+    test_touching(2 * more);
     test_live(&marching, false, "a march");
     if (all_of_it) {
         test_live(&marching, true, "a march, made again");

@@ -4,6 +4,7 @@
 #ifndef SINEW_TLED_BENCH_H
 #define SINEW_TLED_BENCH_H
 
+#include "tled/contact/self_contact.h"
 #include "tled/contact/sliding.h"
 #include "tled/cpu/cpu.h"
 #include "tled/problem/collider.h"
@@ -36,6 +37,7 @@ typedef struct bench {
     run_end end;
     sliding sliding; /* of no nodes, unless a test makes it, as: */
     collider probe;
+    self_contact skin;
     err e;
     double *displacement, *velocity, time; /* the last frame's */
     int64_t frames, cuts;                  /* written; the most parts that a step was cut in */
@@ -134,6 +136,7 @@ static inline void bench_free(bench *b)
     pool_destroy(b->setup.threads);
     sliding_free(&b->sliding);
     collider_free(&b->probe);
+    self_contact_free(&b->skin);
     tled_problem_free(&b->problem);
     script_free(&b->script);
     model_free(&b->m);

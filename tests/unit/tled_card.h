@@ -90,6 +90,14 @@ static inline void put_in_form(tled_problem *p)
         ok(false, "form %d: form_tried.h has coefficients", (int)in_form);
 }
 
+/* Whether skin at a slit all through the middle of a block of 6 layers, and below it, touches itself, and the ball that
+ * nodes slide on; NULL: it does not. */
+typedef struct touching {
+    double friction;
+    bool blended, in_bone;
+} touching;
+static const touching *in_touching;
+
 /* Whether the lowest nodes slide on a ball below them, which moves with the body, if there is one; every third may come
  * off. */
 static bool in_sliding;
@@ -111,6 +119,8 @@ static inline void add_field(bench *b, const block *what)
     }
     if (model_find(&b->m, "body.name"))
         block_array(&b->m, "field.body")->i32[0] = 0;
+    if (in_touching && in_touching->in_bone)
+        block_array(&b->m, "field.contact")->u8[0] = 1;
     float *to = block_array(&b->m, "distance.value")->f32;
     for (int32_t k = 0; k < nz; k++)
         for (int32_t j = 0; j < ny; j++)
@@ -141,6 +151,57 @@ static inline void add_sliding(bench *b, const block *what)
     bench_must(sliding_make(&b->sliding, &b->problem, &b->m, .1, &b->e), &b->e);
 }
 
+enum { SKIN_MIDDLE = 3, SKIN_SAMPLES = 2, SKIN_ALONG = 5 }; /* samples: of each face; along: elements along x */
+
+/* Which face of an element is skin: 0 its lower one, 1 its upper one; -1: none is, as of those beyond the first few. */
+static inline int skin_face(const bench *b, int64_t element)
+{
+    const tled_problem *p = &b->problem;
+    const double *at = p->position + 3 * (int64_t)p->element_node[8 * element];
+    const long k = lround(at[2] / p->side[2]);
+    if (at[0] > SKIN_ALONG * p->side[0])
+        return -1;
+    return k == SKIN_MIDDLE || k == 0 ? 0 : k == SKIN_MIDDLE - 1 ? 1 : -1;
+}
+
+static inline void add_skin(bench *b, const block *what)
+{
+    static const double at[SKIN_SAMPLES][2] = {{.3, .4}, {.85, .1}};
+    const model_array *place = model_find(&b->m, "node.position");
+    const double middle = SKIN_MIDDLE * what->side[2];
+    const double along = (SKIN_ALONG + 1.5) * what->side[0];
+    int64_t count = 0, nodes = 0;
+    for (int64_t n = 0; n < place->rows; n++)
+        nodes += place->f64[3 * n] < along;
+    for (int64_t i = 0; i < b->problem.elements; i++)
+        count += skin_face(b, i) >= 0 ? SKIN_SAMPLES : 0;
+    bench_must(model_axis_add(&b->m, "contact", count, &b->e) || model_axis_add(&b->m, "skin", nodes, &b->e), &b->e);
+    int32_t *element = block_array(&b->m, "contact.element")->i32, *node = block_array(&b->m, "skin.node")->i32;
+    double *weight = block_array(&b->m, "contact.weight")->f64;
+    float *distance = block_array(&b->m, "skin.distance")->f32;
+    if (in_touching->blended)
+        memset(block_array(&b->m, "contact.blended")->u8, 1, (size_t)count);
+    for (int64_t n = 0; n < place->rows; n++) {
+        const double z = place->f64[3 * n + 2];
+        if (place->f64[3 * n] < along) {
+            *node++ = (int32_t)n;
+            *distance++ = (float)-fmin(z, fabs(z - middle));
+        }
+    }
+    for (int64_t i = 0; i < b->problem.elements; i++)
+        for (int k = 0; k < SKIN_SAMPLES && skin_face(b, i) >= 0; k++, weight += 3) {
+            *element++ = (int32_t)i;
+            weight[0] = at[k][0];
+            weight[1] = at[k][1];
+            weight[2] = 1 - skin_face(b, i);
+        }
+    if (!in_sliding && in_touching->in_bone) {
+        add_field(b, what);
+        bench_must(sliding_make(&b->sliding, &b->problem, &b->m, .1, &b->e), &b->e);
+    }
+    bench_must(self_contact_make(&b->skin, &b->problem, &b->m, &b->sliding, in_touching->friction, NULL, &b->e), &b->e);
+}
+
 /* What presses on the block's top, past the middle, and goes down and aside; NULL: nothing does. */
 static const probe *in_pressing;
 
@@ -168,6 +229,8 @@ static inline void make(bench *b, const block *what, double level, bool scripted
         put_in_form(&b->problem);
     if (in_sliding)
         add_sliding(b, what);
+    if (in_touching)
+        add_skin(b, what);
     if (in_pressing)
         add_probe(b, what);
     bench_steps(b, steps, b->setup.damping);

@@ -1,5 +1,5 @@
-/* Trials of nodes that slide on bone (tled/contact/sliding.h), and of a probe (tled/problem/collider.h), on a card that
- * the processor plays. Included by test_tled_emulated.c.
+/* Trials of nodes that slide on bone (tled/contact/sliding.h), of skin that touches itself (tled/contact/self_contact.h),
+ * and of a probe (tled/problem/collider.h), on a card that the processor plays. Included by test_tled_emulated.c.
  */
 #ifndef SINEW_TLED_TRIAL_CONTACT_H
 #define SINEW_TLED_TRIAL_CONTACT_H
@@ -70,6 +70,36 @@ static inline void test_pressing(int64_t steps)
     test_look(&lump, true, steps, &tled_cuda_single, "a look at what a probe presses", 1e-6);
     in_bent = false;
     in_pressing = NULL;
+}
+
+/* Skin on skin, and on a bone that moves: nearly the CPU's numbers, as sums are others; the same by other lots, and by
+ * more or fewer blocks. */
+static inline void test_touching(int64_t steps)
+{
+    const touching plainly = {.2, false, false}, blended = {0, true, true}, all = {.3, true, true};
+    const trial closed = {"a slit that is closed", lump, 0, false, {7, 5, 6}, false};
+    const trial moved = {"a slit, and a bone that moves", lump, 0, true, {0}, false};
+    const trial rests = {"skin on skin and bone, that rubs", lump, 0, false, {7, 5, 6}, true};
+    answer with, without;
+    in_slit = &slits[2];
+    find(&without, &closed, &tled_cpu_double, steps);
+    in_touching = &plainly;
+    find(&with, &closed, &tled_cpu_double, steps);
+    ok(off(&with, &without) > 1e-3 && off(&with, &without) < INFINITY, "skin matters: %.2g %s", off(&with, &without),
+       with.b.e.text);
+    answer_free(&with);
+    answer_free(&without);
+    try(&closed, &plain, &tled_cuda_double, &tled_cpu_double, steps, 1e-9);
+    try(&closed, &marching, &tled_cuda_single, &tled_cpu_double, steps, 1e-5);
+    in_touching = &blended;
+    try(&moved, &staying, &tled_cuda_double, &tled_cpu_double, 1, 1e-9);
+    in_touching = &all;
+    try(&rests, &staying, &tled_cuda_single, &tled_cpu_single, steps, 1e-5);
+    in_sliding = true;
+    try(&moved, &plain, &tled_cuda_double, &tled_cpu_double, 1, 1e-9);
+    in_sliding = false;
+    in_touching = NULL;
+    in_slit = NULL;
 }
 
 #endif

@@ -50,6 +50,7 @@ static int make_maps(maker *k)
 {
     contact_blend *b = k->b;
     const motion *m = k->of;
+    b->maps = m->places;
     b->start = mem_array(m->places + 1, sizeof *b->start, "the skin", k->e);
     for (int64_t i = 0; b->start && i < m->places; i++) {
         const int64_t from = k->entries, count = m->start[i + 1] - m->start[i];
@@ -139,13 +140,16 @@ void contact_blend_shares(const contact_blend *b, int64_t element, const double 
     memset(share, 0, b->count[element] * sizeof *share);
     for (int c = 0; c < 8; c++) {
         const uint8_t *index = b->index + (8 * element + c) * BLEND_NODES;
+        const int32_t place = b->place[8 * element + c];
         const int count = contact_blend_entries(b, element, c);
         double from[3];
         if (part[c] == 0)
             continue;
         contact_blend_from(b, element, c, xi, from);
         for (int k = 0; k < count; k++)
-            share[index[k]] += part[c] * contact_blend_entry(b, element, c, k, from);
+            share[index[k]] +=
+                part[c] * (place < 0 ? contact_blend_own(b->side, k, from)
+                                     : contact_blend_share(b->coefficient + 4 * (int64_t)(b->start[place] + k), from));
     }
 }
 

@@ -23,7 +23,8 @@ typedef struct contact_blend {
     int32_t *node;    /* elements x BLEND_MOST: rows of nodes, of so many: */
     uint8_t *count;   /* elements */
     uint8_t *index;   /* elements x 8 x BLEND_NODES: which of these an entry of a node's map is */
-    int32_t *start;   /* maps + 1 */
+    int64_t maps;
+    int32_t *start; /* maps + 1 */
     double *
         coefficient; /* entries x 4: of a displacement, in the map's at its node, and in its slope along x, y, z, 1/m */
 } contact_blend;
@@ -59,17 +60,18 @@ DEFORMED_FUNCTION double contact_blend_slope(const double *side, int k, int axis
     return (deformed_corner(k, axis) ? 1 : -1) / (4 * side[axis]);
 }
 
-/* The share of node k of the map there. */
-DEFORMED_FUNCTION double contact_blend_entry(const contact_blend *b, int64_t element, int c, int k, const double *from)
+/* The share, at a place that is `from` (m) from that of a map, of a node with these coefficients; and of node k of an
+ * element in its own map. */
+DEFORMED_FUNCTION double contact_blend_share(const double *of, const double *from)
 {
-    const int32_t place = b->place[8 * element + c];
+    return of[0] + (of[1] * from[0] + of[2] * from[1] + of[3] * from[2]);
+}
+
+DEFORMED_FUNCTION double contact_blend_own(const double *side, int k, const double *from)
+{
     double share = 1. / 8;
-    if (place >= 0) {
-        const double *of = b->coefficient + 4 * ((int64_t)b->start[place] + k);
-        return of[0] + (of[1] * from[0] + of[2] * from[1] + of[3] * from[2]);
-    }
     for (int a = 0; a < 3; a++)
-        share += contact_blend_slope(b->side, k, a) * from[a];
+        share += contact_blend_slope(side, k, a) * from[a];
     return share;
 }
 

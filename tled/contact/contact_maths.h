@@ -20,9 +20,9 @@ enum {
 #define CONTACT_MARGIN .5
 /* By how much of its sides a place may be outside of an element: beyond stairs of voxels. */
 #define CONTACT_BEYOND .5
-/* How far a node may go before elements are listed anew, of the shortest side: a sample and an element both move by as
- * much at most, and what is extrapolated by more. */
-#define CONTACT_LISTED (CONTACT_MARGIN / 8)
+/* How far a node may go before elements are listed anew, of the shortest side: an element's box and its margin move by
+ * twice as much at most, and a sample too, where it is extrapolated. */
+#define CONTACT_LISTED (CONTACT_MARGIN / 4)
 /* Between the skin's normals at the middles of elements, cosine: what faces as much the same way is not listed. */
 #define CONTACT_ALIKE .8
 /* Skin touches skin that faces it: cosine between the normals. What comes in by the side of an edge is left alone until
@@ -37,8 +37,9 @@ enum {
 #define CONTACT_BONE_DEEP 1.
 /* Skin touches bone that it faces, or where its own normal is not to be trusted, at its edges. */
 #define CONTACT_SURE .25
-/* A sample and what it may touch both move, and by more where they are extrapolated: a share of what is clear. */
-#define CONTACT_SPARE (1. / 8)
+/* What a sample may touch and it itself both move, by twice as much where they are extrapolated: a share of what is
+ * clear. */
+#define CONTACT_SPARE (1. / 4)
 /* Of an element's shortest side: what depth from before is taken back in a step at most. */
 #define CONTACT_RECOVERED 1e-3
 
@@ -59,17 +60,25 @@ typedef struct touch {
 
 /* Which elements samples may be in, by cells of space that the middles of elements are in. */
 typedef struct contact_table {
+    double *at;         /* samples x 3, m: where they are */
     double *sampled;    /* elements x 6, m: the box of the samples of each; of none: low above high */
     double *middle;     /* elements x 3: the skin's normal at their middles */
     double *low, *high; /* elements x 3, m: their boxes, with margins */
     int32_t *count;     /* elements: those that their samples may be in: */
     int32_t *candidate; /* elements x CONTACT_CANDIDATES, ascending */
-    int32_t *first;     /* cells: an element with its middle there, or -1 */
-    int32_t *next;      /* elements: another one, or -1 */
+    int32_t *cell;      /* elements: the cell of the middle of each; -1: it is large */
+    int32_t *start;     /* cells: where those of each begin in: */
+    int32_t *of;        /* elements, by cells; last, those that are large */
+    int32_t *filled;    /* cells: how many of each there are */
     int64_t cells;      /* a power of two: cells of space share them */
 } contact_table;
 
 /* ---- where elements and samples are */
+
+CONTACT_FUNCTION double contact_dot(const double *a, const double *b)
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
 
 CONTACT_FUNCTION deformed_map contact_map(const self_contact *c, const double *x, int32_t element)
 {
@@ -126,25 +135,15 @@ CONTACT_FUNCTION bool contact_rings(const self_contact *c, int32_t one, int32_t 
     return false;
 }
 
-/* Tells whether some element has a node of each of the two. */
-CONTACT_FUNCTION bool contact_have_neighbour(const self_contact *c, int32_t one, int32_t other)
-{
-    for (int k = 0; k < 8; k++)
-        if (contact_rings(c, one, c->element[8 * (int64_t)other + k]))
-            return true;
-    return false;
-}
-
 /* ---- lists */
 
-CONTACT_FUNCTION void contact_box_samples(const self_contact *c, const double *x, const contact_table *t, int64_t i)
+CONTACT_FUNCTION void contact_box_samples(const self_contact *c, const contact_table *t, int64_t i)
 {
     double *box = t->sampled + 6 * i;
     for (int a = 0; a < 3; a++)
         box[a] = DBL_MAX, box[3 + a] = -DBL_MAX;
     for (int32_t k = c->sample_start[i]; k < c->sample_start[i + 1]; k++) {
-        double at[3];
-        contact_place(c, x, c->sample[k], at);
+        const double *at = t->at + 3 * (int64_t)c->sample[k];
         for (int a = 0; a < 3; a++) {
             box[a] = at[a] < box[a] ? at[a] : box[a];
             box[3 + a] = at[a] > box[3 + a] ? at[a] : box[3 + a];
@@ -152,7 +151,7 @@ CONTACT_FUNCTION void contact_box_samples(const self_contact *c, const double *x
     }
 }
 
-/* The boxes of an element and of its samples, and the skin's normal at its middle. */
+/* The boxes of an element and of its samples, which are at t->at, and the skin's normal at its middle. */
 CONTACT_FUNCTION void contact_box(const self_contact *c, const double *x, const contact_table *t, int64_t i)
 {
     const double half[3] = {.5, .5, .5};
@@ -169,7 +168,7 @@ CONTACT_FUNCTION void contact_box(const self_contact *c, const double *x, const 
         t->low[3 * i + a] = low - over;
         t->high[3 * i + a] = high + over;
     }
-    contact_box_samples(c, x, t, i);
+    contact_box_samples(c, t, i);
 }
 
 /* The longest side of an element's box, or of its samples'. */
@@ -178,11 +177,31 @@ CONTACT_FUNCTION double contact_longest(const double *low, const double *high)
     return fmax(fmax(high[0] - low[0], high[1] - low[1]), high[2] - low[2]);
 }
 
-/* Of a cell, m: an element's box that meets a box of samples then has its middle in the cell of that one's, or in one
- * beside it. */
-CONTACT_FUNCTION double contact_side(const self_contact *c, double longest, double widest)
+/* Elements whose boxes are longer than a size are large, and in no cell: of these sizes, in boxes at rest, the least of
+ * which CONTACT_LARGE or fewer elements are longer; or else none is large. */
+enum { CONTACT_SIZES = 4, CONTACT_LARGE = 128 };
+
+CONTACT_FUNCTION double contact_size(const self_contact *c, int which)
 {
-    return fmax((longest + fmax(widest, 0.)) / 2, c->shortest);
+    const double rest =
+        (1 + 2 * CONTACT_BEYOND) * fmax(c->side[0], fmax(c->side[1], c->side[2])) + 2 * CONTACT_MARGIN * c->shortest;
+    return rest * (which == 0 ? 1.25 : which == 1 ? 1.5 : which == 2 ? 2. : 3.);
+}
+
+/* longest: of all boxes; longer: how many are longer than each size. */
+CONTACT_FUNCTION double contact_largest(const self_contact *c, double longest, const int32_t *longer)
+{
+    for (int k = 0; k < CONTACT_SIZES; k++)
+        if (longer[k] <= CONTACT_LARGE)
+            return contact_size(c, k) < longest ? contact_size(c, k) : longest;
+    return longest;
+}
+
+/* Of a cell, m: an element's box, up to the largest, that meets a box of samples, up to the widest, has its middle in
+ * the cell of that one's, or in one beside it. */
+CONTACT_FUNCTION double contact_side(const self_contact *c, double largest, double widest)
+{
+    return fmax((largest + fmax(widest, 0.)) / 2, c->shortest);
 }
 
 /* The cell of space, side of this length, that is `more` cells on from that of a box's middle. */
@@ -203,11 +222,13 @@ enum { CONTACT_HERE = 13, CONTACT_CELLS = 27 }; /* of what `more` counts */
 
 CONTACT_FUNCTION bool contact_share_node(const self_contact *c, int32_t one, int32_t other)
 {
-    for (int i = 0; i < 8; i++)
+    bool is = false;
+    for (int i = 0; i < 8; i++) {
+        const int32_t node = c->element[8 * (int64_t)other + i];
         for (int k = 0; k < 8; k++)
-            if (c->element[8 * (int64_t)one + i] == c->element[8 * (int64_t)other + k])
-                return true;
-    return false;
+            is |= c->element[8 * (int64_t)one + k] == node;
+    }
+    return is;
 }
 
 /* Tells whether x lies in the box of an element, with its margins. */
@@ -219,15 +240,20 @@ CONTACT_FUNCTION bool contact_in_box(const contact_table *t, int32_t element, co
     return true;
 }
 
-/* Whether samples of one element may be in the other. */
+/* Whether an element's box meets that of samples (low, high). */
+CONTACT_FUNCTION bool contact_meets(const contact_table *t, const double *box, int32_t other)
+{
+    bool is = true;
+    for (int a = 0; a < 3; a++)
+        is &= box[3 + a] >= t->low[3 * (int64_t)other + a] && box[a] <= t->high[3 * (int64_t)other + a];
+    return is;
+}
+
+/* Whether samples of one element may touch the skin of the other. */
 CONTACT_FUNCTION bool contact_may_touch(const self_contact *c, const contact_table *t, int32_t one, int32_t other)
 {
-    const double *box = t->sampled + 6 * (int64_t)one;
     const double *n = t->middle + 3 * (int64_t)one, *m = t->middle + 3 * (int64_t)other;
-    for (int a = 0; a < 3; a++)
-        if (!(box[3 + a] >= t->low[3 * (int64_t)other + a] && box[a] <= t->high[3 * (int64_t)other + a]))
-            return false;
-    return n[0] * m[0] + n[1] * m[1] + n[2] * m[2] < CONTACT_ALIKE && !contact_share_node(c, one, other);
+    return contact_dot(n, m) < CONTACT_ALIKE && !contact_share_node(c, one, other);
 }
 
 /* Keeps ascending elements, once each: two cells of space may be one of the table. */
@@ -245,17 +271,20 @@ CONTACT_FUNCTION void contact_add_candidate(const contact_table *t, int64_t to, 
     t->count[to] = n;
 }
 
-/* Lists what samples of element i may be in, where all elements are in cells. */
-CONTACT_FUNCTION void contact_list(const self_contact *c, const contact_table *t, double side, int64_t i)
+/* Lists what samples of element i may be in, where all elements are in cells but for so many large ones. */
+CONTACT_FUNCTION void contact_list(const self_contact *c, const contact_table *t, double side, int32_t large, int64_t i)
 {
     const double *box = t->sampled + 6 * i;
     t->count[i] = 0;
     if (!(box[0] <= box[3]))
         return;
-    for (int n = 0; n < CONTACT_CELLS; n++)
-        for (int32_t j = t->first[contact_cell(t, side, box, box + 3, n)]; j >= 0; j = t->next[j])
-            if (contact_may_touch(c, t, (int32_t)i, j))
-                contact_add_candidate(t, i, j);
+    for (int n = 0; n <= CONTACT_CELLS; n++) {
+        const int32_t cell = n < CONTACT_CELLS ? contact_cell(t, side, box, box + 3, n) : -1;
+        const int32_t start = cell < 0 ? (int32_t)c->elements - large : t->start[cell];
+        for (int32_t j = start; j < start + (cell < 0 ? large : t->filled[cell]); j++)
+            if (contact_meets(t, box, t->of[j]) && contact_may_touch(c, t, (int32_t)i, t->of[j]))
+                contact_add_candidate(t, i, t->of[j]);
+    }
 }
 
 /* ---- what touches */
@@ -273,27 +302,26 @@ CONTACT_FUNCTION void contact_turn(double *normal, double sure, const double *ow
         normal[a] /= square > 0 ? sqrt(square) : 1;
 }
 
-CONTACT_FUNCTION double contact_dot(const double *a, const double *b)
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-/* Tells whether a sample, at a place of t's element, is nearer to other skin than at rest; t: fills its normal and off.
- * If it is not, `clear` gets how far it may still go, m. */
-CONTACT_FUNCTION bool contact_touches_at(const self_contact *c, const double *x, const double *place, touch *t,
-                                         double *clear)
+/* Tells whether a sample, at a place of t's element, is nearer to the skin there than at rest; t: fills its normal and
+ * off. If it is not, `clear` gets how far it may still go, m. */
+CONTACT_FUNCTION bool contact_is_in(const self_contact *c, const double *x, const double *place, touch *t,
+                                    double *clear)
 {
     const deformed_factors *distance = &c->distance[t->element];
     const deformed_map d = contact_map(c, x, t->element);
     const double slope = deformed_slope(&d, place, distance, t->normal);
-    double own[3];
     if (!(slope > 0))
         return false;
     t->off = deformed_value(distance, place) / slope - c->rest[t->sample];
     *clear = fmin(fmax(t->off, 0.), *clear);
-    if (!(t->off < 0))
-        return false;
-    const bool near = contact_have_neighbour(c, c->sample_element[t->sample], t->element);
+    return t->off < 0;
+}
+
+/* Tells whether it faces that, and is no deeper than skin can have come; turns t's normal. near: whether the elements
+ * of the two have a neighbour in common. */
+CONTACT_FUNCTION bool contact_faces(const self_contact *c, const double *x, const double *place, bool near, touch *t)
+{
+    double own[3];
     if (t->off < -(near ? CONTACT_NEAR_DEEP : CONTACT_DEEP) * c->shortest)
         return false;
     const double sure = contact_normal(c, x, t->sample, own), other = contact_certainty(c, t->element, place);
@@ -302,7 +330,7 @@ CONTACT_FUNCTION bool contact_touches_at(const self_contact *c, const double *x,
     return dot < (near ? CONTACT_NEAR_FACING : CONTACT_FACING);
 }
 
-/* Where a sample at `at` is to a bone: as above, of the depth. rest, m: how deep it is at rest, at most 0; which: of
+/* Tells whether a sample at `at` is deeper in a bone than at rest, and faces it: as above. rest, m: how deep it is at rest, at most 0; which: of
  * the ground's fields; was, is: its bone, at the step's two ends. */
 CONTACT_FUNCTION bool contact_touches_bone(const self_contact *c, const double *x, const double *at,
                                            const sliding_ground *g, int32_t which, const sliding_bone *was,

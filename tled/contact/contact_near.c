@@ -3,7 +3,15 @@
 #include <math.h>
 #include <string.h>
 
-enum { ELEMENTS_CHUNK = 64 };
+enum { ELEMENTS_CHUNK = 64, SAMPLES_CHUNK = 64 };
+
+static void place_work(void *context, int64_t chunk, int64_t from, int64_t to)
+{
+    const self_contact_work *w = context;
+    (void)chunk;
+    for (int64_t i = from; i < to; i++)
+        contact_place(w->c, w->x, i, w->table.at + 3 * i);
+}
 
 static void box_work(void *context, int64_t chunk, int64_t from, int64_t to)
 {
@@ -13,23 +21,46 @@ static void box_work(void *context, int64_t chunk, int64_t from, int64_t to)
         contact_box(w->c, w->x, &w->table, i);
 }
 
+/* The size of the largest element that is in a cell, and w->side. */
+static double find_largest(self_contact_work *w)
+{
+    const contact_table *t = &w->table;
+    int32_t longer[CONTACT_SIZES] = {0};
+    double longest = 0, widest = 0;
+    for (int64_t i = 0; i < w->c->elements; i++) {
+        const double length = contact_longest(t->low + 3 * i, t->high + 3 * i);
+        longest = fmax(longest, length);
+        widest = fmax(widest, contact_longest(t->sampled + 6 * i, t->sampled + 6 * i + 3));
+        for (int k = 0; k < CONTACT_SIZES; k++)
+            longer[k] += length > contact_size(w->c, k);
+    }
+    const double largest = contact_largest(w->c, longest, longer);
+    w->side = contact_side(w->c, largest, widest);
+    return largest;
+}
+
 /* Elements by cells. */
 static void table_elements(self_contact_work *w)
 {
     const contact_table *t = &w->table;
-    double longest = 0, widest = 0;
-    for (int64_t i = 0; i < w->c->elements; i++) {
-        longest = fmax(longest, contact_longest(t->low + 3 * i, t->high + 3 * i));
-        widest = fmax(widest, contact_longest(t->sampled + 6 * i, t->sampled + 6 * i + 3));
+    const int64_t elements = w->c->elements;
+    const double largest = find_largest(w);
+    w->large = 0;
+    memset(t->filled, 0, (size_t)t->cells * sizeof *t->filled);
+    for (int64_t i = 0; i < elements; i++) {
+        const double *low = t->low + 3 * i, *high = t->high + 3 * i;
+        t->cell[i] = contact_longest(low, high) > largest ? -1 : contact_cell(t, w->side, low, high, CONTACT_HERE);
+        if (t->cell[i] >= 0)
+            t->filled[t->cell[i]]++;
     }
-    w->side = contact_side(w->c, longest, widest);
-    for (int64_t k = 0; k < t->cells; k++)
-        t->first[k] = -1;
-    for (int64_t i = 0; i < w->c->elements; i++) {
-        int32_t *first = &t->first[contact_cell(t, w->side, t->low + 3 * i, t->high + 3 * i, CONTACT_HERE)];
-        t->next[i] = *first;
-        *first = (int32_t)i;
-    }
+    for (int64_t k = 0, start = 0; k < t->cells; start += t->filled[k++])
+        t->start[k] = (int32_t)start;
+    memset(t->filled, 0, (size_t)t->cells * sizeof *t->filled);
+    for (int64_t i = 0; i < elements; i++)
+        if (t->cell[i] >= 0)
+            t->of[t->start[t->cell[i]] + t->filled[t->cell[i]]++] = (int32_t)i;
+        else
+            t->of[elements - ++w->large] = (int32_t)i;
 }
 
 static void list_work(void *context, int64_t chunk, int64_t from, int64_t to)
@@ -37,7 +68,7 @@ static void list_work(void *context, int64_t chunk, int64_t from, int64_t to)
     const self_contact_work *w = context;
     (void)chunk;
     for (int64_t i = from; i < to; i++)
-        contact_list(w->c, &w->table, w->side, i);
+        contact_list(w->c, &w->table, w->side, w->large, i);
 }
 
 static bool has_moved(const self_contact_work *w)
@@ -77,6 +108,7 @@ void contact_near_list(self_contact_work *w, pool *threads)
     if (w->is_listed && !has_moved(w))
         return;
     memcpy(w->listed, w->x, 3 * (size_t)w->c->nodes * sizeof *w->x);
+    pool_run(threads, w->c->samples, SAMPLES_CHUNK, place_work, w);
     pool_run(threads, w->c->elements, ELEMENTS_CHUNK, box_work, w);
     table_elements(w);
     pool_run(threads, w->c->elements, ELEMENTS_CHUNK, list_work, w);

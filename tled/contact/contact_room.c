@@ -18,14 +18,17 @@ void self_contact_room_free(self_contact_work *w)
     free(w->change);
     free(w->sum);
     free(w->about);
+    free(w->table.at);
     free(w->table.sampled);
     free(w->table.middle);
     free(w->table.low);
     free(w->table.high);
     free(w->table.count);
     free(w->table.candidate);
-    free(w->table.first);
-    free(w->table.next);
+    free(w->table.cell);
+    free(w->table.start);
+    free(w->table.of);
+    free(w->table.filled);
     free(w->near);
     free(w->until);
     free(w->touch);
@@ -61,14 +64,17 @@ self_contact_work *contact_room_make(const tled_problem *p, const self_contact *
         (w->change = mem_array(c->nodes, 3 * sizeof *w->change, what, e)) &&
         (w->sum = mem_array(c->nodes, sizeof *w->sum, what, e)) &&
         (w->about = mem_array(c->nodes, sizeof *w->about, what, e)) &&
+        (t->at = mem_array(c->samples, 3 * sizeof *t->at, what, e)) &&
         (t->sampled = mem_array(c->elements, 6 * sizeof *t->sampled, what, e)) &&
         (t->middle = mem_array(c->elements, 3 * sizeof *t->middle, what, e)) &&
         (t->low = mem_array(c->elements, 3 * sizeof *t->low, what, e)) &&
         (t->high = mem_array(c->elements, 3 * sizeof *t->high, what, e)) &&
         (t->count = mem_array(c->elements, sizeof *t->count, what, e)) &&
         (t->candidate = mem_array(c->elements, CONTACT_CANDIDATES * sizeof *t->candidate, what, e)) &&
-        (t->first = mem_array(t->cells, sizeof *t->first, what, e)) &&
-        (t->next = mem_array(c->elements, sizeof *t->next, what, e)) &&
+        (t->cell = mem_array(c->elements, sizeof *t->cell, what, e)) &&
+        (t->start = mem_array(t->cells, sizeof *t->start, what, e)) &&
+        (t->of = mem_array(c->elements, sizeof *t->of, what, e)) &&
+        (t->filled = mem_array(t->cells, sizeof *t->filled, what, e)) &&
         (w->near = mem_array(c->samples, sizeof *w->near, what, e)) &&
         (w->until = mem_array(c->samples, sizeof *w->until, what, e)) &&
         (w->touch = mem_array(c->samples, 2 * sizeof *w->touch, what, e)) &&
@@ -89,8 +95,8 @@ self_contact_work *self_contact_room(const tled_problem *p, err *e)
 
 static int64_t contact_table_bytes(const self_contact *c, int64_t cells)
 {
-    return c->elements * (15 * (int64_t)sizeof(double) + (CONTACT_CANDIDATES + 2) * (int64_t)sizeof(int32_t)) +
-           cells * (int64_t)sizeof(int32_t);
+    return c->elements * (15 * (int64_t)sizeof(double) + (CONTACT_CANDIDATES + 3) * (int64_t)sizeof(int32_t)) +
+           2 * cells * (int64_t)sizeof(int32_t) + 3 * c->samples * (int64_t)sizeof(double);
 }
 
 int64_t self_contact_bytes(const self_contact_work *w)

@@ -26,6 +26,7 @@ struct self_contact_work {
     bool is_listed;
     contact_table table;
     double side;   /* m: of the table's cells */
+    int32_t large; /* elements that are in none */
     int32_t *near; /* samples that have candidates */
     int64_t nears;
     double drift;  /* m: how far the fastest node has come since the start, step by step */

@@ -86,6 +86,15 @@ static int32_t find_element(const self_contact_work *w, int64_t sample, const do
     return found;
 }
 
+/* Tells whether some element has a node of each of the two. */
+static bool have_neighbour(const self_contact *c, int32_t one, int32_t other)
+{
+    for (int k = 0; k < 8; k++)
+        if (contact_rings(c, one, c->element[8 * (int64_t)other + k]))
+            return true;
+    return false;
+}
+
 /* Tells whether a sample is nearer to other skin than at rest. If it is not, `clear` gets how far it may still go, m.
  */
 static bool find_touch(const self_contact_work *w, int64_t sample, touch *t, double *clear)
@@ -97,7 +106,8 @@ static bool find_touch(const self_contact_work *w, int64_t sample, touch *t, dou
     t->element = find_element(w, sample, x, place);
     *clear = CONTACT_MARGIN * w->c->shortest;
     if (t->element < 0 || (w->c->blend && !blend_place(w, t->element, x, place)) ||
-        !contact_touches_at(w->c, w->x, place, t, clear))
+        !contact_is_in(w->c, w->x, place, t, clear) ||
+        !contact_faces(w->c, w->x, place, have_neighbour(w->c, w->c->sample_element[sample], t->element), t))
         return false;
     take_shares(w, place, t);
     return true;

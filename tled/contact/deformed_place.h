@@ -117,9 +117,9 @@ DEFORMED_FUNCTION double deformed_cofactors(const deformed_map *d, const double 
 DEFORMED_FUNCTION bool deformed_go(const deformed_map *d, const double *way, double *xi)
 {
     double c[3][3];
-    const double det = deformed_cofactors(d, xi, c);
+    const double det = deformed_cofactors(d, xi, c), per = 1 / det;
     for (int a = 0; a < 3 && det > 0; a++)
-        xi[a] += (c[0][a] * way[0] + c[1][a] * way[1] + c[2][a] * way[2]) / det;
+        xi[a] += (c[0][a] * way[0] + c[1][a] * way[1] + c[2][a] * way[2]) * per;
     return det > 0;
 }
 
@@ -134,8 +134,9 @@ DEFORMED_FUNCTION bool deformed_place(const deformed_map *d, const double *x, do
         const double det = deformed_cofactors(d, xi, c);
         if (!(det > 0))
             return false;
+        const double per = 1 / det; /* a card takes long to divide */
         for (int a = 0; a < 3; a++) {
-            const double step = (c[0][a] * off[0] + c[1][a] * off[1] + c[2][a] * off[2]) / det;
+            const double step = (c[0][a] * off[0] + c[1][a] * off[1] + c[2][a] * off[2]) * per;
             xi[a] += step;
             way = fabs(step) > way ? fabs(step) : way;
         }
@@ -153,15 +154,15 @@ DEFORMED_FUNCTION double deformed_slope(const deformed_map *d, const double *xi,
                                         double *direction)
 {
     double c[3][3], local[3], square = 0;
-    const double det = deformed_cofactors(d, xi, c);
+    const double det = deformed_cofactors(d, xi, c), per = 1 / det;
     deformed_slopes(value, xi, local);
     for (int r = 0; r < 3; r++) {
-        direction[r] = det > 0 ? (c[r][0] * local[0] + c[r][1] * local[1] + c[r][2] * local[2]) / det : 0;
+        direction[r] = det > 0 ? (c[r][0] * local[0] + c[r][1] * local[1] + c[r][2] * local[2]) * per : 0;
         square += direction[r] * direction[r];
     }
     const double length = sqrt(square);
     for (int r = 0; r < 3; r++)
-        direction[r] = length > 0 ? direction[r] / length : 0;
+        direction[r] *= length > 0 ? 1 / length : 0;
     return length;
 }
 

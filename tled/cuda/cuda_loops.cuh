@@ -68,6 +68,27 @@ static int slide(cuda_state *s, const cuda_batch *b, err *e)
     return card_check(slide_start(c, s->stream), "the start of sliding", s->step, e);
 }
 
+/* What touches is put back, after a pass that begins a step; beside the next one, but for the tiles about it. */
+static int touch_skin(cuda_state *s, const cuda_batch *b, err *e)
+{
+    if (!s->p->self_contact || b->first >= b->count)
+        return 0;
+    const cuda_touch k = {s->view,
+                          s->skin,
+                          s->field[TLED_DISPLACEMENT],
+                          s->field[TLED_VELOCITY],
+                          b->rows,
+                          b->rows + 3 * s->p->script->curves,
+                          1 / b->plan->rate,
+                          s->skin_launches++};
+    s->skin_due = s->skin_tiles > 0;
+    if (s->skin_due && (CUDA_TRY(cudaEventRecord(s->before_skin, s->stream)) ||
+                        CUDA_TRY(cudaStreamWaitEvent(s->beside, s->before_skin))))
+        return -1;
+    return card_check(skin_start(k, s->skin_blocks, s->skin_due ? s->beside : s->stream), "the start of skin contact",
+                      s->step, e);
+}
+
 static int take_passes(cuda_state *s, const cuda_batch *b, err *e)
 {
     if (!has_more(s->p))
@@ -77,7 +98,7 @@ static int take_passes(cuda_state *s, const cuda_batch *b, err *e)
         if (s->method->passes(s, &one, e) ||
             press(s, tled_time(b->plan, one.first), 1 / b->plan->rate, b->plan->damping, one.first > 0,
                   one.first < b->count, e) ||
-            slide(s, &one, e))
+            slide(s, &one, e) || touch_skin(s, &one, e))
             return -1;
     }
     return 0;
@@ -224,7 +245,7 @@ static int cuda_restore(cuda_state *s, err *e)
 static int64_t cuda_bytes(const cuda_state *s)
 {
     const int64_t rows = 3 * s->view.stride * (int64_t)sizeof(real);
-    return s->bytes + (s->saved_internal ? rows : 0) + (s->frame ? frame_bytes(s) : 0);
+    return s->bytes + s->skin_bytes + (s->saved_internal ? rows : 0) + (s->frame ? frame_bytes(s) : 0);
 }
 
 static int look_at_sliders(cuda_state *s, const cuda_look<real> *of, err *e)
@@ -281,6 +302,8 @@ static void cuda_destroy(cuda_state *s)
         cudaStreamSynchronize(s->stream);
     if (s->sending)
         cudaStreamSynchronize(s->sending);
+    if (s->beside)
+        cudaStreamSynchronize(s->beside);
     for (int i = 0; i < TLED_SLOTS; i++) {
         if (s->slot[i].arrived)
             cudaEventDestroy(s->slot[i].arrived);
@@ -294,6 +317,7 @@ static void cuda_destroy(cuda_state *s)
     cudaFreeHost(s->staging);
     cudaFreeHost(s->sums_host);
     card_give(s->memory);
+    card_give(s->skin_memory);
     card_give(s->saved_internal);
     card_give(s->frame);
     pool_destroy(s->wideners);
@@ -305,6 +329,12 @@ static void cuda_destroy(cuda_state *s)
         cudaStreamDestroy(s->stream);
     if (s->sending)
         cudaStreamDestroy(s->sending);
+    if (s->beside)
+        cudaStreamDestroy(s->beside);
+    if (s->before_skin)
+        cudaEventDestroy(s->before_skin);
+    if (s->after_skin)
+        cudaEventDestroy(s->after_skin);
     if (s->method && s->method->end)
         s->method->end(s);
     tiles_free(&s->tiles);
@@ -324,7 +354,7 @@ static int fill(cuda_state *s, err *e)
 {
     const tled_problem *p = s->p;
     s->curves = p->script->curves + p->spare_curves;
-    if (cut_tiles(s, e) || choose_method(s, e))
+    if (cut_tiles(s, e) || choose_method(s, e) || part_tiles(s, e))
         return -1;
     s->view.stride = (p->nodes + 31) / 32 * 32;
     s->view.nodes = (int32_t)p->nodes;
@@ -334,7 +364,7 @@ static int fill(cuda_state *s, err *e)
     memcpy(s->view.side, p->side, sizeof p->side);
     s->shape = element_box(p->side[0], p->side[1], p->side[2]);
     s->time = p->start;
-    if (put_problem(s, e) || make_events(s, e) || set_all(s, e) || s->method->begin(s, e))
+    if (put_problem(s, e) || put_skin(s, e) || make_events(s, e) || set_all(s, e) || s->method->begin(s, e))
         return -1;
     /* Streams that do not block wait for none of it by themselves. */
     return CUDA_TRY(cudaDeviceSynchronize()) ? -1 : find_internal(s, e);
@@ -378,6 +408,22 @@ static int put_sliders(cuda_state *s, err *e)
     return failed ? -1 : 0;
 }
 
+/* And to skin. */
+static int put_skin_script(cuda_state *s, err *e)
+{
+    const self_contact *c = s->p->self_contact;
+    if (!c)
+        return 0;
+    int32_t *stand = make_stand(s, e);
+    cuda_skin_node *made = stand ? skin_nodes(s->p, stand, e) : NULL;
+    const int failed = !made || put_array(s, s->skin.node, made, c->nodes * (int64_t)sizeof *made, e) ||
+                       (c->solids && put_array(s, s->skin.ground.field, c->bones->field,
+                                               c->bones->fields * (int64_t)sizeof *c->bones->field, e));
+    free(stand);
+    free(made);
+    return failed ? -1 : 0;
+}
+
 /* Curves that contract muscles stay where they are: lines of that kind change values alone. */
 static int cuda_reload(cuda_state *s, err *e)
 {
@@ -389,7 +435,7 @@ static int cuda_reload(cuda_state *s, err *e)
     s->spare_is_internal = false;
     const int64_t infos = s->tiles.nodes * (int64_t)sizeof *s->tiles.node_info;
     if (put_script(s, e) || put_array(s, s->view.node_info, s->tiles.node_info, infos, e) || put_flags(s, e) ||
-        put_sliders(s, e))
+        put_sliders(s, e) || put_skin_script(s, e))
         return -1;
     return CUDA_TRY(cudaDeviceSynchronize());
 }
@@ -399,7 +445,7 @@ static int64_t cuda_computed(const cuda_state *s)
     return s->method->computed(s);
 }
 
-enum { CUDA_FEATURES = EXECUTOR_USUAL | EXECUTOR_SLIDING | EXECUTOR_CONTACT };
+enum { CUDA_FEATURES = EXECUTOR_USUAL | EXECUTOR_SLIDING | EXECUTOR_CONTACT | EXECUTOR_SELF_CONTACT };
 
 const tled_executor CUDA_EXECUTOR = {
     .is = {.device = "cuda", .features = CUDA_FEATURES, .forms = TILES_FORMS, .unusable = card_unusable},

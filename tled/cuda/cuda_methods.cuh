@@ -91,13 +91,30 @@ static int tiles_begin(cuda_state *s, err *e)
     return 0;
 }
 
-static int begin_pass(cuda_state *s, const cuda_pass *p, err *e)
+/* A pass of `count` tiles, from `first` on. */
+static int start_tiles(cuda_state *s, const cuda_pass *p, int64_t first, int64_t count, cudaStream_t stream, err *e)
 {
+    cuda_view<real> v = s->view;
+    v.tiles += first;
+    v.list = v.list ? v.list + first : NULL;
     const cudaError_t started = with_brick(s->size, [&](auto g) {
-        return with_stepper<CUDA_TILES>(
-            wants_of(s->p), [&](auto l) { return pass_start<decltype(g)>(l, s->view, *p, s->tiles.count, s->stream); });
+        return with_stepper<CUDA_TILES>(wants_of(s->p),
+                                        [&](auto l) { return pass_start<decltype(g)>(l, v, *p, count, stream); });
     });
     return card_check(started, "the start of a pass", s->step, e);
+}
+
+/* Tiles about skin follow what goes on beside. */
+static int begin_pass(cuda_state *s, const cuda_pass *p, err *e)
+{
+    const int64_t last = s->skin_due ? s->skin_tiles : 0, first = s->tiles.count - last;
+    if (start_tiles(s, p, 0, first, s->stream, e) || (last && start_tiles(s, p, first, last, s->beside, e)))
+        return -1;
+    s->skin_due = false;
+    return last && (CUDA_TRY(cudaEventRecord(s->after_skin, s->beside)) ||
+                    CUDA_TRY(cudaStreamWaitEvent(s->stream, s->after_skin)))
+               ? -1
+               : 0;
 }
 
 static void swap_displacements(cuda_state *s)
@@ -164,7 +181,7 @@ static int64_t tiles_computed(const cuda_state *s)
 /* Tells whether the card has more to do after each pass (take_passes). */
 static bool has_more(const tled_problem *p)
 {
-    return p->sliding || p->collider;
+    return p->sliding || p->collider || p->self_contact;
 }
 
 static int resident_take(cuda_state *s, bool *takes, err *e)
@@ -500,6 +517,7 @@ static const cuda_method cuda_methods[] = {
      .computed = march_computed,
      .end = march_end},
     {.forms = TILES_FORMS,
+     .parts = true,
      .take = tiles_take,
      .arrange = rows_arrange,
      .list = tiles_list,

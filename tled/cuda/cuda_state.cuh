@@ -7,11 +7,13 @@
 #include "solve/card_layout.cuh"
 #include "tled/cuda/cuda_press.cuh"
 #include "tled/cuda/cuda_resident.cuh"
+#include "tled/cuda/cuda_skin_make.cuh"
 #include "tled/cuda/cuda_sliding.cuh"
 
 #include "tled/cuda/cuda_march.cuh" /* wants element.h before it */
 
 enum { TABLE_STEPS = 256, TABLE_ROWS = TABLE_STEPS + 2, TABLES = 2, COPY_CHUNK = 4096, WIDENERS = 4 };
+enum { FIRST_OF_ALL = -100 }; /* a priority: the card takes its nearest */
 
 /* Bytes: a frame that is copied sooner than it is worth its own memory on the card. */
 #ifndef FRAME_DIRECT
@@ -50,6 +52,7 @@ typedef struct cuda_batch {
  * state, or for a batch of passes, and never within a step. They return -1 with e filled. */
 typedef struct cuda_method {
     uint32_t forms; /* that it is compiled for: bit i for form i */
+    bool parts;     /* whether some tiles may take a pass before others */
     /* Whether it takes the problem, which is cut in tiles. */
     int (*take)(cuda_state *s, bool *takes, err *e);
     /* How the arrays of the state stand: s->numbers, and in the view. */
@@ -91,13 +94,21 @@ struct tled_state {
     cuda_sliders sliders;     /* on the card, as are: */
     const double *position;   /* for a probe, or NULL */
     const double *plane;      /* of a convex one */
-    int64_t numbers;          /* of each of those that steps move: 3 x stride, or, where it marches, 4 x stride */
-    uint64_t *message;        /* between tiles that are resident */
-    uint32_t messages;        /* passes that they have sent them for */
-    real *saved;              /* all fields, one after the other, those that steps move in rows: 3 x stride */
-    real *saved_internal;     /* in rows; made when first wanted */
-    real *frame;              /* to send (cuda_frame.cuh); likewise, unless that is: one of the two */
-    pool *wideners;           /* make doubles of it on the host, beside those of the run: made with it */
+    cuda_skin skin;           /* that touches itself; in memory of its own: */
+    char *skin_memory;        /* or NULL: none does */
+    int64_t skin_bytes, skin_blocks;
+    int64_t skin_tiles; /* the last ones, which have its nodes; 0: all wait for it */
+    uint32_t skin_launches;
+    bool skin_due; /* it goes on beside, and the next pass of its tiles comes after it: */
+    cudaStream_t beside;
+    cudaEvent_t before_skin, after_skin;
+    int64_t numbers;      /* of each of those that steps move: 3 x stride, or, where it marches, 4 x stride */
+    uint64_t *message;    /* between tiles that are resident */
+    uint32_t messages;    /* passes that they have sent them for */
+    real *saved;          /* all fields, one after the other, those that steps move in rows: 3 x stride */
+    real *saved_internal; /* in rows; made when first wanted */
+    real *frame;          /* to send (cuda_frame.cuh); likewise, unless that is: one of the two */
+    pool *wideners;       /* make doubles of it on the host, beside those of the run: made with it */
     bool spare_is_internal, has_saved_internal;
     bool frame_direct;          /* there is no room for `frame` */
     double *table[TABLES];      /* on the card: TABLE_ROWS rows of the curves' values */
@@ -256,6 +267,9 @@ static int make_events(cuda_state *s, err *e)
     const size_t row = 3 * (size_t)(s->curves ? s->curves : 1) * sizeof(double);
     if (CUDA_TRY(cudaStreamCreateWithFlags(&s->stream, cudaStreamNonBlocking)) ||
         CUDA_TRY(cudaStreamCreateWithFlags(&s->sending, cudaStreamNonBlocking)) ||
+        CUDA_TRY(cudaStreamCreateWithPriority(&s->beside, cudaStreamNonBlocking, FIRST_OF_ALL)) ||
+        CUDA_TRY(cudaEventCreateWithFlags(&s->before_skin, cudaEventDisableTiming)) ||
+        CUDA_TRY(cudaEventCreateWithFlags(&s->after_skin, cudaEventDisableTiming)) ||
         CUDA_TRY(cudaEventCreateWithFlags(&s->frame_free, cudaEventDisableTiming)) ||
         CUDA_TRY(cudaEventCreateWithFlags(&s->frame_ready, cudaEventDisableTiming)) ||
         CUDA_TRY(cudaMallocHost((void **)&s->sums_host, sizeof *s->sums_host)) ||
@@ -365,12 +379,19 @@ static int make_weight(cuda_numbers *n, const cuda_state *s, err *e)
     return n->weight ? 0 : -1;
 }
 
-/* The caller's to free. NULL with e filled. */
-static cuda_slider *make_sliders(const cuda_state *s, err *e)
+/* Where the model's nodes stand, the caller's to free. NULL with e filled. */
+static int32_t *make_stand(const cuda_state *s, err *e)
 {
     int32_t *stand = (int32_t *)mem_array(s->p->nodes, sizeof *stand, "the solver", e);
     for (int64_t k = 0; stand && k < s->p->nodes; k++)
         stand[s->tiles.node[k]] = (int32_t)k;
+    return stand;
+}
+
+/* The caller's to free. NULL with e filled. */
+static cuda_slider *make_sliders(const cuda_state *s, err *e)
+{
+    int32_t *stand = make_stand(s, e);
     cuda_slider *made = stand ? slider_list(s->p, stand, e) : NULL;
     free(stand);
     return made;
@@ -460,6 +481,68 @@ out:
     free(numbers.slider);
     free(numbers.position);
     return result;
+}
+
+/* Skin that touches itself, if any does. */
+static int put_skin(cuda_state *s, err *e)
+{
+    if (!s->p->self_contact)
+        return 0;
+    int32_t *stand = make_stand(s, e);
+    s->skin_bytes = stand ? skin_make(&s->skin, s->p, stand, &s->skin_memory, e) : -1;
+    free(stand);
+    s->skin_blocks = skin_blocks(s->p->self_contact);
+    return s->skin_bytes < 0 ? -1 : 0;
+}
+
+/* Whether a tile has one of the nodes, by where they stand. */
+static bool tile_has(const tiles *t, int64_t i, const uint8_t *about)
+{
+    const tile *of = &t->tile[i];
+    bool has = false;
+    for (int32_t k = of->node; k < of->node + of->nodes; k++)
+        has |= about[k];
+    for (int32_t k = of->halo; k < of->halo + of->halos; k++)
+        has |= about[t->halo_node[k]];
+    return has;
+}
+
+/* Puts tiles that have a node about skin, their own or not, behind all others: these need not wait for it. */
+static int part_tiles(cuda_state *s, err *e)
+{
+    tiles *t = &s->tiles;
+    const self_contact *c = s->p->self_contact;
+    if (!c || !s->method->parts)
+        return 0;
+    uint8_t *is = (uint8_t *)mem_array(s->p->nodes, 2, "the solver", e), *about = is + s->p->nodes;
+    tile *part = is ? (tile *)mem_array(t->count, sizeof *part, "the solver", e) : NULL;
+    int32_t *list = part ? (int32_t *)mem_array(t->list ? t->count : 0, sizeof *list, "the solver", e) : NULL;
+    for (int64_t i = 0; list && i < c->nodes; i++)
+        is[c->node[i]] = 1;
+    for (int64_t k = 0; list && k < t->nodes; k++)
+        about[k] = is[t->node[k]];
+    int64_t others = 0;
+    for (int pass = 0; list && pass < 2; pass++)
+        for (int64_t i = 0, to = pass ? others : 0; i < t->count; i++) {
+            if (tile_has(t, i, about) != pass)
+                continue;
+            part[to] = t->tile[i];
+            if (t->list)
+                list[to] = t->list[i];
+            others += !pass;
+            to++;
+        }
+    if (list) {
+        memcpy(t->tile, part, (size_t)t->count * sizeof *part);
+        if (t->list)
+            memcpy(t->list, list, (size_t)t->count * sizeof *list);
+        s->skin_tiles = others ? t->count - others : 0;
+    }
+    const bool failed = !list;
+    free(list);
+    free(part);
+    free(is);
+    return failed ? -1 : 0;
 }
 
 #endif

@@ -1,0 +1,202 @@
+/* What skin that touches itself works in on a card: what the kernel of cuda_skin.cuh sees, and how its threads, warps
+ * and blocks add up and wait for each other. Included by cuda_skin_find.cuh and cuda_skin_solve.cuh alone.
+ *
+ * Numbers that one launch leaves for the next stand twice: a launch reads those of its parity, and fills the others.
+ */
+#ifndef SINEW_CUDA_SKIN_ROOM_CUH
+#define SINEW_CUDA_SKIN_ROOM_CUH
+
+#include "solve/card_layout.cuh"
+#include "tled/cuda/cuda_ptx.cuh"
+#include "tled/cuda/cuda_view.cuh"
+
+extern "C" {
+#include "surface/hash.h"
+#include "tled/contact/contact_blend.h"
+#include "tled/contact/contact_maths.h"
+}
+
+enum {
+    SKIN_THREADS = 256,
+    SKIN_WARPS = SKIN_THREADS / 32,
+    SKIN_TOGETHER = 2,                     /* blocks that a multiprocessor is to have registers for */
+    SKIN_BLOCK_NODES = 96,                 /* the least that a block is worth its waiting for */
+    SKIN_BLOCKS = SKIN_THREADS,            /* the most: each is waited for by a thread */
+    SKIN_PHASES = 16 + 2 * CONTACT_PASSES, /* no fewer than a launch has */
+    SKIN_CHANGES = 3,
+    SKIN_SOLIDS = 32,               /* bones that skin may not enter */
+    SKIN_LISTED = 128,              /* candidates that a warp sorts */
+    SKIN_EACH = 2 * BLEND_MOST / 32 /* of a contact's nodes, a thread's */
+};
+
+enum { SKIN_OWN = 1 << 30 };
+
+typedef unsigned long long skin_whole; /* a signed whole number, modulo 2^64 */
+
+/* Of 1: a unit of shares, and, of an element's shortest side, of ways. */
+#define SKIN_SHARE_UNIT (1. / (1ll << 40))
+#define SKIN_WAY_UNIT   (1. / (1ll << 50))
+
+/* A node about skin. */
+typedef struct cuda_skin_node {
+    double position[3], mass; /* m, at rest; kg */
+    int32_t stand;            /* where it stands */
+    int32_t is_free[3];       /* its components: nothing holds them */
+} cuda_skin_node;
+
+/* Numbers of all, by parity where there are two. */
+typedef struct cuda_skin_all {
+    double drift[2], solid_drift[2][SKIN_SOLIDS]; /* m: as of self_contact_work */
+    sliding_bone solid_was[2][SKIN_SOLIDS];       /* where they were at the end of a step */
+    skin_whole most[2], listed[2]; /* bits of the most that a node has come since the launch before, and since the
+                                        list, squared, m2 */
+    skin_whole longest, widest;    /* bits, m: of boxes */
+    int32_t touches[2], abouts[2], actives[2], finding[2]; /* finding: of these, those that are taken */
+    int32_t filled, large, listing;                        /* of the table, and of owners, so far */
+    int32_t longer[CONTACT_SIZES];                         /* boxes */
+} cuda_skin_all;
+
+/* All on the card, but for c.blend and c.bones, which kernels do not follow. */
+typedef struct cuda_skin {
+    self_contact c;
+    contact_blend blend;  /* of no elements: skin does not move blended */
+    const int32_t *entry; /* elements x 8 x BLEND_MOST: the row of its coefficients in each of the maps; SKIN_OWN + k:
+                             it is node k of the element's own; -1: it is none of the map's */
+    contact_table table;
+    int32_t *taken;       /* its cells: as `filled` */
+    const int32_t *owner; /* owners: elements that have samples */
+    int32_t owners;
+    sliding_ground ground; /* its bones */
+    const cuda_skin_node *node;
+    double *x, *listed;         /* nodes x 3, m */
+    double *until, *bone_until; /* samples; solids x samples */
+    int32_t *active;            /* samples: those that may touch, in any order */
+    touch *found;               /* samples x 2 */
+    int32_t *place_node;        /* samples x place_most: what `found` points to */
+    double *place_share;
+    int32_t place_most;
+    skin_whole *sum, *change[SKIN_CHANGES], *fresh; /* nodes: of shares; nodes x 3: ways, and those that came now; 0
+                                                       between launches */
+    double *moved;                                  /* nodes x 3, m: by what presses */
+    int32_t *about;                                 /* nodes: which have contacts, in any order */
+    cuda_skin_all *all;
+    uint32_t *done; /* blocks: the phases that each has done, of all launches */
+} cuda_skin;
+
+typedef struct cuda_touch {
+    cuda_view<real> view;
+    cuda_skin skin;
+    real *to, *velocity;      /* to: the next displacements */
+    const double *now, *next; /* the curves' values, at the step's two ends */
+    double dt;
+    uint32_t launch;
+} cuda_touch;
+
+/* ---- of a warp, a block, and all of them */
+
+/* The same sum in each of its threads. */
+static __device__ double warp_sum(double x)
+{
+    for (int with = 16; with; with /= 2)
+        x += __shfl_xor_sync(~0u, x, with);
+    return x;
+}
+
+static __device__ void warp_sums(double *x, int count)
+{
+    for (int a = 0; a < count; a++)
+        x[a] = warp_sum(x[a]);
+}
+
+static __device__ skin_whole bits_of(double at_least_0)
+{
+    return (skin_whole)(uint32_t)__double2hiint(at_least_0) << 32 | (uint32_t)__double2loint(at_least_0);
+}
+
+static __device__ double of_bits(skin_whole bits)
+{
+    return __hiloint2double((int)(uint32_t)(bits >> 32), (int)(uint32_t)bits);
+}
+
+/* Raises *to to the bits of the most of all threads of a block, which all call it. */
+static __device__ void block_most(double mine, skin_whole *to)
+{
+    __shared__ double most[SKIN_WARPS];
+    for (int with = 16; with; with /= 2) {
+        const double other = __shfl_xor_sync(~0u, mine, with);
+        mine = mine > other ? mine : other;
+    }
+    __syncthreads();
+    if (threadIdx.x % 32 == 0)
+        most[threadIdx.x / 32] = mine;
+    __syncthreads();
+    if (threadIdx.x)
+        return;
+    for (int w = 1; w < SKIN_WARPS; w++)
+        mine = mine > most[w] ? mine : most[w];
+    atomicMax(to, bits_of(mine));
+}
+
+/* Waits until the first so many blocks, which alone call it, have come here; *phase counts. */
+static __device__ void all_wait(const cuda_touch &k, uint32_t *phase, unsigned blocks)
+{
+    const uint32_t word = k.launch * SKIN_PHASES + ++*phase;
+    __syncthreads();
+    if (blocks == 1)
+        return;
+    if (threadIdx.x == 0)
+        tell_done(&k.skin.done[blockIdx.x], word);
+    if (threadIdx.x < blocks)
+        while ((int32_t)(hear_done(&k.skin.done[threadIdx.x]) - word) < 0)
+            ;
+    __syncthreads();
+}
+
+static __device__ skin_whole whole_of(double x, double per_unit)
+{
+    return (skin_whole)llrint(x * per_unit);
+}
+
+static __device__ double of_whole(skin_whole x, double unit)
+{
+    return (double)(long long)x * unit;
+}
+
+static __device__ double way_unit(const cuda_skin &s)
+{
+    return SKIN_WAY_UNIT * s.c.shortest;
+}
+
+/* What a warp works in. */
+typedef struct skin_desk {
+    double share[BLEND_MOST], place[3];
+    int32_t slot, cell[32], start[32], filled[32], count, list[SKIN_LISTED];
+} skin_desk;
+
+/* ---- nodes of contacts */
+
+/* Those that a thread of a warp has of a contact: both sides'. */
+typedef struct skin_lever {
+    int32_t node[SKIN_EACH];
+    double share[SKIN_EACH]; /* 0: there is none; below 0 on the place's side, but where shares are so */
+    uint32_t place;          /* bits: of the place's side */
+} skin_lever;
+
+static __device__ skin_lever lever_of(const cuda_skin &s, const touch &t, int lane)
+{
+    const int32_t from = s.c.lever_start[t.sample], own = s.c.lever_start[t.sample + 1] - from;
+    const int count = own + (t.sides > 1 ? t.count : 0);
+    skin_lever l;
+    l.place = 0;
+#pragma unroll
+    for (int j = 0; j < SKIN_EACH; j++) {
+        const int i = lane + 32 * j;
+        const bool is = i < count, place = i >= own;
+        l.node[j] = !is ? 0 : place ? t.node[i - own] : s.c.lever_node[from + i];
+        l.share[j] = !is ? 0 : place ? -t.share[i - own] : s.c.lever_share[from + i];
+        l.place |= (uint32_t)place << j;
+    }
+    return l;
+}
+
+#endif
