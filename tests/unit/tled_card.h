@@ -161,7 +161,9 @@ static inline int skin_face(const bench *b, int64_t element)
     const long k = lround(at[2] / p->side[2]);
     if (at[0] > SKIN_ALONG * p->side[0])
         return -1;
-    return k == SKIN_MIDDLE || k == 0 ? 0 : k == SKIN_MIDDLE - 1 ? 1 : -1;
+    if (k == SKIN_MIDDLE || k == 0)
+        return 0;
+    return k == SKIN_MIDDLE - 1 ? 1 : -1;
 }
 
 static inline void add_skin(bench *b, const block *what)

@@ -1,5 +1,6 @@
-/* Trials of nodes that slide on bone (tled/contact/sliding.h), of skin that touches itself (tled/contact/self_contact.h),
- * and of a probe (tled/problem/collider.h), on a card that the processor plays. Included by test_tled_emulated.c.
+/* Trials of nodes that slide on bone (tled/contact/sliding.h), of skin that touches itself
+ * (tled/contact/self_contact.h), and of a probe (tled/problem/collider.h), on a card that the processor plays. Included
+ * by test_tled_emulated.c.
  */
 #ifndef SINEW_TLED_TRIAL_CONTACT_H
 #define SINEW_TLED_TRIAL_CONTACT_H

@@ -185,7 +185,8 @@ CONTACT_FUNCTION double contact_size(const self_contact *c, int which)
 {
     const double rest =
         (1 + 2 * CONTACT_BEYOND) * fmax(c->side[0], fmax(c->side[1], c->side[2])) + 2 * CONTACT_MARGIN * c->shortest;
-    return rest * (which == 0 ? 1.25 : which == 1 ? 1.5 : which == 2 ? 2. : 3.);
+    const double times[CONTACT_SIZES] = {1.25, 1.5, 2, 3};
+    return times[which] * rest;
 }
 
 /* longest: of all boxes; longer: how many are longer than each size. */
@@ -330,8 +331,8 @@ CONTACT_FUNCTION bool contact_faces(const self_contact *c, const double *x, cons
     return dot < (near ? CONTACT_NEAR_FACING : CONTACT_FACING);
 }
 
-/* Tells whether a sample at `at` is deeper in a bone than at rest, and faces it: as above. rest, m: how deep it is at rest, at most 0; which: of
- * the ground's fields; was, is: its bone, at the step's two ends. */
+/* Tells whether a sample at `at` is deeper in a bone than at rest, and faces it: as above. rest, m: how deep it is at
+ * rest, at most 0; which: of the ground's fields; was, is: its bone, at the step's two ends. */
 CONTACT_FUNCTION bool contact_touches_bone(const self_contact *c, const double *x, const double *at,
                                            const sliding_ground *g, int32_t which, const sliding_bone *was,
                                            const sliding_bone *is, double rest, touch *t, double *clear)

@@ -30,7 +30,9 @@ typedef struct deformed_map {
 /* Of corner k, in VTK order, 0 or 1 along an axis. */
 DEFORMED_FUNCTION int deformed_corner(int k, int axis)
 {
-    return axis == 0 ? (k ^ k >> 1) & 1 : axis == 1 ? k >> 1 & 1 : k >> 2;
+    if (axis == 0)
+        return (k ^ k >> 1) & 1;
+    return axis == 1 ? k >> 1 & 1 : k >> 2;
 }
 
 /* v: at the nodes, in VTK order. */

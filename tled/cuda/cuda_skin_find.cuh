@@ -103,11 +103,13 @@ static __device__ int warp_cells(const cuda_skin &s, double side, int64_t i, int
     desk->cell[lane] = cell;
     __syncwarp();
     const int32_t large = s.all->large;
-    int filled = lane < CONTACT_CELLS ? t->filled[cell] : lane == CONTACT_CELLS ? large : 0, before = 0;
-    for (int n = 0; n < lane && lane < CONTACT_CELLS; n++)
+    int filled = cell >= 0 ? t->filled[cell] : 0, start = filled ? t->start[cell] : 0, before = 0;
+    for (int n = 0; n < lane && cell >= 0; n++)
         filled = desk->cell[n] == cell ? 0 : filled;
+    if (lane == CONTACT_CELLS)
+        filled = large, start = (int32_t)s.c.elements - large;
     desk->filled[lane] = filled;
-    desk->start[lane] = lane == CONTACT_CELLS ? (int32_t)s.c.elements - large : filled ? t->start[cell] : 0;
+    desk->start[lane] = start;
     if (lane == 0)
         desk->count = 0;
     __syncwarp();

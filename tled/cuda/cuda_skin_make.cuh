@@ -1,5 +1,5 @@
-/* Puts skin that touches itself on a card: what the host makes for the kernel of cuda_skin.cuh, and its memory. Included
- * by cuda_state.cuh alone.
+/* Puts skin that touches itself on a card: what the host makes for the kernel of cuda_skin.cuh, and its memory.
+ * Included by cuda_state.cuh alone.
  */
 #ifndef SINEW_CUDA_SKIN_MAKE_CUH
 #define SINEW_CUDA_SKIN_MAKE_CUH

@@ -192,8 +192,12 @@ static __device__ skin_lever lever_of(const cuda_skin &s, const touch &t, int la
     for (int j = 0; j < SKIN_EACH; j++) {
         const int i = lane + 32 * j;
         const bool is = i < count, place = i >= own;
-        l.node[j] = !is ? 0 : place ? t.node[i - own] : s.c.lever_node[from + i];
-        l.share[j] = !is ? 0 : place ? -t.share[i - own] : s.c.lever_share[from + i];
+        l.node[j] = 0;
+        l.share[j] = 0;
+        if (is) {
+            l.node[j] = place ? t.node[i - own] : s.c.lever_node[from + i];
+            l.share[j] = place ? -t.share[i - own] : s.c.lever_share[from + i];
+        }
         l.place |= (uint32_t)place << j;
     }
     return l;

@@ -132,7 +132,7 @@ static __device__ void end_component(const cuda_touch &k, int64_t i, int last)
     const double unit = way_unit(s), came = of_whole(s.fresh[i], unit);
     const double pushed = of_whole(s.change[last % SKIN_CHANGES][i], unit);
     const bool is_rubbed = last >= CONTACT_PASSES;
-    const double moved = is_rubbed ? s.moved[i] + pushed : pushed, speed = (is_rubbed ? came + pushed : came) / k.dt;
+    const double moved = (is_rubbed ? s.moved[i] : 0) + pushed, speed = (came + (is_rubbed ? pushed : 0)) / k.dt;
     if (n.is_free[i % 3]) {
         const int64_t at = k.view.offset[i % 3] + n.stand * k.view.along;
         k.to[at] = (real)((double)k.to[at] + moved);
