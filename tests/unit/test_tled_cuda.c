@@ -309,6 +309,35 @@ static void test_sliding(const tled_executor *twice, const tled_executor *once)
     in_bent = in_sliding = false;
 }
 
+/* Nearly the numbers of the CPU in double precision: less nearly from step to step, as contacts come and go. */
+static void test_near(const tled_executor *cuda, double tolerance, const char *name)
+{
+    bench here, there;
+    make(&here, &lump, 0, true, &tled_cpu_double, 60);
+    make(&there, &lump, 0, true, cuda, 60);
+    const int gone = bench_go(&here) | bench_go(&there);
+    ok(!gone && here.end.reading.largest > 1e-6 && apart(&there, &here) < tolerance, "%s: %.2g mm, %.2g off %s", name,
+       1e3 * here.end.reading.largest, apart(&there, &here), there.e.text);
+    bench_free(&here);
+    bench_free(&there);
+}
+
+/* Skin that touches itself and a bone that moves: nearly the CPU's numbers, and the same bytes run after run. */
+static void test_touching(const tled_executor *twice, const tled_executor *once)
+{
+    const touching plainly = {0, false, false}, all = {.3, true, true};
+    in_slit = &slits[2];
+    in_touching = &plainly;
+    test_near(once, 1e-5, "single, skin that touches");
+    in_touching = &all;
+    test_near(once, 1e-5, "single, skin that rubs on skin and bone");
+    test_near(twice, 1e-6, "double, skin that rubs on skin and bone");
+    test_bytes(&lump, 0, true, 1000, twice, twice, "double, skin that rubs, run after run");
+    test_bytes(&lump, 0, true, 1000, once, once, "single, skin that rubs, run after run");
+    in_touching = NULL;
+    in_slit = NULL;
+}
+
 /* Isotropic control: the CPU's bytes, and a look. */
 static void test_isotropic(const tled_executor *twice, const tled_executor *once)
 {
@@ -502,6 +531,7 @@ int main(void)
     test_all_marched(once);
     test_isotropic(twice, once);
     test_sliding(twice, once);
+    test_touching(twice, once);
     test_long(twice, "double");
     test_long(once, "single");
     test_rest(twice, "double", 1e-5);
