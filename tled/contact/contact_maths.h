@@ -37,9 +37,9 @@ enum {
 #define CONTACT_BONE_DEEP 1.
 /* Skin touches bone that it faces, or where its own normal is not to be trusted, at its edges. */
 #define CONTACT_SURE .25
-/* What a sample may touch and it itself both move, by twice as much where they are extrapolated: a share of what is
- * clear. */
-#define CONTACT_SPARE (1. / 4)
+/* A sample is looked at again when nodes may have come so much of what was clear: it and what it may touch both move, and
+ * by more where they are extrapolated. No bound: beside an element, a sample may come to touch it sooner. */
+#define CONTACT_SPARE (1. / 8)
 /* Of an element's shortest side: what depth from before is taken back in a step at most. */
 #define CONTACT_RECOVERED 1e-3
 
