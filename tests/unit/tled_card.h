@@ -153,7 +153,8 @@ static inline void add_sliding(bench *b, const block *what)
 
 enum { SKIN_MIDDLE = 3, SKIN_SAMPLES = 2, SKIN_ALONG = 5 }; /* samples: of each face; along: elements along x */
 
-/* Which face of an element is skin: 0 its lower one, 1 its upper one; -1: none is, as of those beyond the first few. */
+/* Returns which face of an element is skin: 0 for its lower one, 1 for its upper one; -1 where none is, as of elements
+ * beyond the first few. */
 static inline int skin_face(const bench *b, int64_t element)
 {
     const tled_problem *p = &b->problem;

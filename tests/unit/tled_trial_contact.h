@@ -8,6 +8,15 @@
 #include "tled/cuda/cuda.h"
 #include "tled_trial.h"
 
+/* Whether what was done without something differs from what was done with it, by more than so much; both are freed. */
+static inline void test_matters(answer *without, answer *with, double least, const char *what)
+{
+    const double apart = off(with, without);
+    ok(apart > least && apart < INFINITY, "%s: %.2g %s", what, apart, with->b.e.text);
+    answer_free(with);
+    answer_free(without);
+}
+
 /* The CPU's bytes in bricks, which are not those that stay, as these take no step between passes; nearly, where it
  * marches, with slits and cut elements too; and looks. */
 static inline void test_sliding(int64_t steps)
@@ -19,10 +28,7 @@ static inline void test_sliding(int64_t steps)
     find(&without, &moved, &tled_cpu_double, steps);
     in_sliding = true;
     find(&with, &moved, &tled_cpu_double, steps);
-    ok(off(&with, &without) > 1e-4 && off(&with, &without) < INFINITY, "sliding matters: %.2g %s", off(&with, &without),
-       with.b.e.text);
-    answer_free(&with);
-    answer_free(&without);
+    test_matters(&without, &with, 1e-4, "sliding matters");
     try(&moved, &plain, &tled_cuda_single, &tled_cpu_single, steps, 0);
     try(&moved, &staying, &tled_cuda_double, &tled_cpu_double, steps, 0);
     try(&rests, &plain, &tled_cuda_single, &tled_cpu_single, steps, 0);
@@ -54,10 +60,7 @@ static inline void test_pressing(int64_t steps)
     find(&without, &pressed, &tled_cpu_double, steps);
     in_pressing = &ball;
     find(&with, &pressed, &tled_cpu_double, steps);
-    ok(off(&with, &without) > 1e-4 && off(&with, &without) < INFINITY, "a probe matters: %.2g %s", off(&with, &without),
-       with.b.e.text);
-    answer_free(&with);
-    answer_free(&without);
+    test_matters(&without, &with, 1e-4, "a probe matters");
     try(&pressed, &plain, &tled_cuda_double, &tled_cpu_double, steps, 1e-13);
     try(&rests, &staying, &tled_cuda_single, &tled_cpu_single, steps, 1e-5);
     try(&pressed, &marching, &tled_cuda_single, &tled_cpu_double, steps, 1e-5);
@@ -86,10 +89,7 @@ static inline void test_touching(int64_t steps)
     find(&without, &closed, &tled_cpu_double, steps);
     in_touching = &plainly;
     find(&with, &closed, &tled_cpu_double, steps);
-    ok(off(&with, &without) > 1e-3 && off(&with, &without) < INFINITY, "skin matters: %.2g %s", off(&with, &without),
-       with.b.e.text);
-    answer_free(&with);
-    answer_free(&without);
+    test_matters(&without, &with, 1e-3, "skin matters");
     try(&closed, &plain, &tled_cuda_double, &tled_cpu_double, steps, 1e-9);
     try(&closed, &marching, &tled_cuda_single, &tled_cpu_double, steps, 1e-5);
     in_touching = &blended;

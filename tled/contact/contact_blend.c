@@ -145,7 +145,7 @@ void contact_blend_shares(const contact_blend *b, int64_t element, const double 
         double from[3];
         if (part[c] == 0)
             continue;
-        contact_blend_from(b, element, c, xi, from);
+        contact_blend_from(b->side, c, place < 0, xi, from);
         for (int k = 0; k < count; k++)
             share[index[k]] +=
                 part[c] * (place < 0 ? contact_blend_own(b->side, k, from)

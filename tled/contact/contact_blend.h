@@ -45,13 +45,12 @@ DEFORMED_FUNCTION int contact_blend_entries(const contact_blend *b, int64_t elem
     return place < 0 ? 8 : b->start[place + 1] - b->start[place];
 }
 
-/* A place in the element, 0 to 1 along each axis in it, from that of the map, m. */
-DEFORMED_FUNCTION void contact_blend_from(const contact_blend *b, int64_t element, int c, const double *xi,
-                                          double *from)
+/* A place in an element of these sides, 0 to 1 along each axis in it, from that of corner c's map, m; own: that is the
+ * element's own. */
+DEFORMED_FUNCTION void contact_blend_from(const double *side, int c, bool own, const double *xi, double *from)
 {
-    const bool own = b->place[8 * element + c] < 0;
     for (int a = 0; a < 3; a++)
-        from[a] = b->side[a] * (xi[a] - (own ? .5 : deformed_corner(c, a)));
+        from[a] = side[a] * (xi[a] - (own ? .5 : deformed_corner(c, a)));
 }
 
 /* Corner k's part in its element's slope along an axis, 1/m. */

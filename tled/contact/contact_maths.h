@@ -37,8 +37,8 @@ enum {
 #define CONTACT_BONE_DEEP 1.
 /* Skin touches bone that it faces, or where its own normal is not to be trusted, at its edges. */
 #define CONTACT_SURE .25
-/* A sample is looked at again when nodes may have come so much of what was clear: it and what it may touch both move, and
- * by more where they are extrapolated. No bound: beside an element, a sample may come to touch it sooner. */
+/* A sample is looked at again when nodes may have come so much of what was clear: it and what it may touch both move,
+ * and by more where they are extrapolated. No bound: beside an element, a sample may come to touch it sooner. */
 #define CONTACT_SPARE (1. / 8)
 /* Of an element's shortest side: what depth from before is taken back in a step at most. */
 #define CONTACT_RECOVERED 1e-3
@@ -117,22 +117,6 @@ CONTACT_FUNCTION double contact_normal(const self_contact *c, const double *x, i
     const double *xi = c->place + 3 * sample;
     deformed_slope(&d, xi, &c->distance[element], normal);
     return contact_certainty(c, element, xi);
-}
-
-/* Tells whether a node is of the elements around one's nodes. */
-CONTACT_FUNCTION bool contact_rings(const self_contact *c, int32_t one, int32_t node)
-{
-    int32_t from = c->ring_start[one], to = c->ring_start[one + 1];
-    while (from < to) {
-        const int32_t middle = from + (to - from) / 2;
-        if (c->ring[middle] == node)
-            return true;
-        if (c->ring[middle] < node)
-            from = middle + 1;
-        else
-            to = middle;
-    }
-    return false;
 }
 
 /* ---- lists */

@@ -4,6 +4,7 @@
 #include "tled/contact/contact_near.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 enum { SAMPLES_CHUNK = 32 };
@@ -89,8 +90,10 @@ static int32_t find_element(const self_contact_work *w, int64_t sample, const do
 /* Tells whether some element has a node of each of the two. */
 static bool have_neighbour(const self_contact *c, int32_t one, int32_t other)
 {
+    const int32_t from = c->ring_start[one], count = c->ring_start[one + 1] - from;
     for (int k = 0; k < 8; k++)
-        if (contact_rings(c, one, c->element[8 * (int64_t)other + k]))
+        if (bsearch(&c->element[8 * (int64_t)other + k], c->ring + from, (size_t)count, sizeof *c->ring,
+                    contact_by_number))
             return true;
     return false;
 }

@@ -68,7 +68,8 @@ static int slide(cuda_state *s, const cuda_batch *b, err *e)
     return card_check(slide_start(c, s->stream), "the start of sliding", s->step, e);
 }
 
-/* What touches is put back, after a pass that begins a step; beside the next one, but for the tiles about it. */
+/* Starts what puts skin back that touches, after a pass that begins a step. It goes on beside the next pass, of which
+ * only the tiles about skin wait for it. */
 static int touch_skin(cuda_state *s, const cuda_batch *b, err *e)
 {
     if (!s->p->self_contact || b->first >= b->count)
@@ -298,12 +299,11 @@ static void cuda_destroy(cuda_state *s)
 {
     if (!s)
         return;
-    if (s->stream)
-        cudaStreamSynchronize(s->stream);
-    if (s->sending)
-        cudaStreamSynchronize(s->sending);
-    if (s->beside)
-        cudaStreamSynchronize(s->beside);
+    const cudaStream_t streams[] = {s->stream, s->sending, s->beside};
+    const cudaEvent_t events[] = {s->frame_free, s->frame_ready, s->before_skin, s->after_skin};
+    for (cudaStream_t of : streams)
+        if (of)
+            cudaStreamSynchronize(of);
     for (int i = 0; i < TLED_SLOTS; i++) {
         if (s->slot[i].arrived)
             cudaEventDestroy(s->slot[i].arrived);
@@ -321,20 +321,12 @@ static void cuda_destroy(cuda_state *s)
     card_give(s->saved_internal);
     card_give(s->frame);
     pool_destroy(s->wideners);
-    if (s->frame_free)
-        cudaEventDestroy(s->frame_free);
-    if (s->frame_ready)
-        cudaEventDestroy(s->frame_ready);
-    if (s->stream)
-        cudaStreamDestroy(s->stream);
-    if (s->sending)
-        cudaStreamDestroy(s->sending);
-    if (s->beside)
-        cudaStreamDestroy(s->beside);
-    if (s->before_skin)
-        cudaEventDestroy(s->before_skin);
-    if (s->after_skin)
-        cudaEventDestroy(s->after_skin);
+    for (cudaEvent_t of : events)
+        if (of)
+            cudaEventDestroy(of);
+    for (cudaStream_t of : streams)
+        if (of)
+            cudaStreamDestroy(of);
     if (s->method && s->method->end)
         s->method->end(s);
     tiles_free(&s->tiles);
@@ -396,29 +388,30 @@ static int put_flags(cuda_state *s, err *e)
     return failed ? -1 : 0;
 }
 
-/* What the script does to nodes that slide, and to their bones. */
+/* What the script does to bones. */
+static int put_bones(cuda_state *s, err *e)
+{
+    const sliding *of = bones_of(s->p);
+    return of ? put_array(s, s->sliders.ground.field, of->field, of->fields * (int64_t)sizeof *of->field, e) : 0;
+}
+
+/* To nodes that slide. */
 static int put_sliders(cuda_state *s, err *e)
 {
     const sliding *of = s->p->sliding;
     cuda_slider *made = of ? make_sliders(s, e) : NULL;
-    const int failed =
-        of && (!made || put_array(s, s->sliders.slider, made, of->count * (int64_t)sizeof *made, e) ||
-               put_array(s, s->sliders.ground.field, of->field, of->fields * (int64_t)sizeof *of->field, e));
+    const int failed = of && (!made || put_array(s, s->sliders.slider, made, of->count * (int64_t)sizeof *made, e));
     free(made);
     return failed ? -1 : 0;
 }
 
-/* And to skin. */
-static int put_skin_script(cuda_state *s, err *e)
+/* And to nodes about skin. */
+static int put_skin_nodes(cuda_state *s, err *e)
 {
-    const self_contact *c = s->p->self_contact;
-    if (!c)
-        return 0;
-    int32_t *stand = make_stand(s, e);
+    const self_contact *of = s->p->self_contact;
+    int32_t *stand = of ? make_stand(s, e) : NULL;
     cuda_skin_node *made = stand ? skin_nodes(s->p, stand, e) : NULL;
-    const int failed = !made || put_array(s, s->skin.node, made, c->nodes * (int64_t)sizeof *made, e) ||
-                       (c->solids && put_array(s, s->skin.ground.field, c->bones->field,
-                                               c->bones->fields * (int64_t)sizeof *c->bones->field, e));
+    const int failed = of && (!made || put_array(s, s->skin.node, made, of->nodes * (int64_t)sizeof *made, e));
     free(stand);
     free(made);
     return failed ? -1 : 0;
@@ -435,7 +428,7 @@ static int cuda_reload(cuda_state *s, err *e)
     s->spare_is_internal = false;
     const int64_t infos = s->tiles.nodes * (int64_t)sizeof *s->tiles.node_info;
     if (put_script(s, e) || put_array(s, s->view.node_info, s->tiles.node_info, infos, e) || put_flags(s, e) ||
-        put_sliders(s, e) || put_skin_script(s, e))
+        put_bones(s, e) || put_sliders(s, e) || put_skin_nodes(s, e))
         return -1;
     return CUDA_TRY(cudaDeviceSynchronize());
 }

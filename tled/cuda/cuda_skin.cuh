@@ -1,8 +1,8 @@
 /* Skin that touches itself or bone, on a card: after each pass that begins a step, one kernel finds what touches and
  * puts it back, by contact_maths.h (self_contact.h has the equations). A warp has a sample, or a contact, at a time.
  *
- * What contacts give nodes is added up as whole numbers, so that the sums do not depend on the order: the same bytes
- * run after run, and nearly the processor's numbers. Blocks wait for each other between phases:
+ * Sums over contacts are sums of whole numbers, which do not depend on the order: bytes are the same run after run, and
+ * numbers are nearly the processor's. Blocks wait for each other between phases:
  *
  *     gather   where nodes are, and how far they have come
  *     list     the table of elements, where nodes have come further than its margin: 6 phases
@@ -11,6 +11,7 @@
  *     press    the other passes
  *     rub      friction, in as many
  *     end      displacements and velocities of the nodes about contacts
+ *
  * Included by cuda_state.cuh alone.
  */
 #ifndef SINEW_CUDA_SKIN_CUH

@@ -6,6 +6,13 @@
 
 #include "tled/cuda/cuda_skin_room.cuh"
 
+/* Calls f with each of 0 to count - 1, in one thread of all blocks. */
+template <class F> static __device__ void for_all(int64_t count, F f)
+{
+    for (int64_t i = blockIdx.x * SKIN_THREADS + threadIdx.x; i < count; i += gridDim.x * SKIN_THREADS)
+        f(i);
+}
+
 /* ---- where nodes are */
 
 static __device__ void move_solids(const cuda_touch &k, int odd)
@@ -25,7 +32,7 @@ static __device__ void gather(const cuda_touch &k, int odd)
 {
     const cuda_skin &s = k.skin;
     double most = 0, listed = 0;
-    for (int64_t i = blockIdx.x * SKIN_THREADS + threadIdx.x; i < s.c.nodes; i += gridDim.x * SKIN_THREADS) {
+    for_all(s.c.nodes, [&](int64_t i) {
         real u[3];
         double square = 0, way = 0;
         cuda_three<false>(k.view, k.to, s.node[i].stand, u);
@@ -35,24 +42,17 @@ static __device__ void gather(const cuda_touch &k, int odd)
             way += (to - then) * (to - then);
             s.x[3 * i + a] = to;
         }
-        most = square > most || square != square ? square : most;
-        listed = way > listed || way != way ? way : listed;
-    }
-    block_most(most, &s.all->most[odd]);
-    block_most(listed, &s.all->listed[odd]);
+        most = fmax(most, square);
+        listed = fmax(listed, way == way ? way : INFINITY);
+    });
+    raise_most(most, &s.all->most[odd]);
+    raise_most(listed, &s.all->listed[odd]);
     move_solids(k, odd);
 }
 
 /* ---- the table */
 
-/* What a thread of all has of `count` things: f of each. */
-template <class F> static __device__ void for_all(int64_t count, F f)
-{
-    for (int64_t i = blockIdx.x * SKIN_THREADS + threadIdx.x; i < count; i += gridDim.x * SKIN_THREADS)
-        f(i);
-}
-
-/* f of rows of 0 to count, each by the warp that is free first; ticket: 0 at first. */
+/* Calls f with each of 0 to count - 1, in the warp that is free first; ticket: 0 at first. */
 template <class F> static __device__ void for_warps(int32_t count, int32_t *ticket, skin_desk *desk, F f)
 {
     const int lane = (int)threadIdx.x % 32;
@@ -88,8 +88,8 @@ static __device__ void list_boxes(const cuda_skin &s)
         for (int k = 0; k < CONTACT_SIZES && length > contact_size(&s.c, k); k++)
             atomicAdd(&s.all->longer[k], 1);
     });
-    block_most(longest, &s.all->longest);
-    block_most(widest, &s.all->widest);
+    raise_most(longest, &s.all->longest);
+    raise_most(widest, &s.all->widest);
 }
 
 /* The cells about the samples of element i, and then the large elements, as a warp goes through them: where those of
@@ -311,8 +311,7 @@ static __device__ void warp_shares(const cuda_skin &s, int64_t element, int lane
 #pragma unroll
         for (int c = 0; c < 8; c++) {
             double from[3];
-            for (int a = 0; a < 3; a++)
-                from[a] = b.side[a] * (xi[a] - (row[c] >= SKIN_OWN ? .5 : deformed_corner(c, a)));
+            contact_blend_from(b.side, c, row[c] >= SKIN_OWN, xi, from);
             const double own = row[c] >= SKIN_OWN ? contact_blend_own(b.side, row[c] - SKIN_OWN, from)
                                                   : contact_blend_share(of[c], from);
             share += part[c] != 0 && row[c] >= 0 ? part[c] * own : 0;
@@ -350,11 +349,10 @@ static __device__ void warp_take_shares(const cuda_skin &s, const double *place,
         double share[8];
         deformed_shares(place, share);
         t->count = 8;
-        for (int i = 0; i < 8; i++)
-            if (i == lane) {
-                t->node[i] = s.c.element[8 * (int64_t)t->element + i];
-                t->share[i] = share[i];
-            }
+        if (lane < 8) {
+            t->node[lane] = s.c.element[8 * (int64_t)t->element + lane];
+            t->share[lane] = share[lane];
+        }
         return;
     }
     const int32_t *node = s.blend.node + BLEND_MOST * (int64_t)t->element;
@@ -414,7 +412,7 @@ static __device__ void warp_add(const cuda_skin &s, int odd, int lane, int32_t s
         s.found[slot] = *t;
 }
 
-/* Whether some element has a node of each of the two. */
+/* As have_neighbour of contact_touch.c. */
 static __device__ bool warp_have_neighbour(const cuda_skin &s, int32_t one, int32_t other, int lane)
 {
     int32_t node[8];

@@ -82,10 +82,6 @@ static void skin_list_model(const self_contact *c, const skin_made *made, cuda_s
     card_layout_copy(l, &s->c.ring, c->ring, c->ring_start[c->elements]);
     card_layout_copy(l, &s->c.solid, c->solid, c->solids);
     card_layout_copy(l, &s->c.bone_rest, c->bone_rest, c->solids * c->samples);
-    if (c->solids) {
-        card_layout_copy(l, &s->ground.field, c->bones->field, c->bones->fields);
-        card_layout_copy(l, &s->ground.value, c->bones->ground.value, sliding_samples(c->bones));
-    }
     if (!c->blend)
         return;
     const contact_blend *b = c->blend;
@@ -131,9 +127,10 @@ static void skin_list_room(const self_contact *c, cuda_skin *s, card_layout *l)
     card_layout_add(l, &s->done, SKIN_BLOCKS);
 }
 
-/* Puts the problem's skin on the card: *memory is the caller's, for card_give, even if this fails. Returns its bytes;
- * -1 with e filled. */
-static int64_t skin_make(cuda_skin *s, const tled_problem *p, const int32_t *stand, char **memory, err *e)
+/* Puts the problem's skin on the card; ground: of its bones, there already. *memory is the caller's, for card_give,
+ * even if this fails. Returns its bytes; -1 with e filled. */
+static int64_t skin_make(cuda_skin *s, const tled_problem *p, const int32_t *stand, const sliding_ground *ground,
+                         char **memory, err *e)
 {
     const self_contact *c = p->self_contact;
     card_layout layout = {0};
@@ -152,8 +149,7 @@ static int64_t skin_make(cuda_skin *s, const tled_problem *p, const int32_t *sta
     s->place_most = c->blend ? BLEND_MOST : 8;
     if (c->blend)
         s->blend = *c->blend;
-    if (c->solids)
-        s->ground = c->bones->ground;
+    s->ground = *ground;
     skin_list_model(c, &made, s, &layout);
     skin_list_room(c, s, &layout);
     const int failed = card_layout_place(&layout, true, "the skin", memory, e);

@@ -9,6 +9,7 @@
 #include "solve/card_layout.cuh"
 #include "tled/cuda/cuda_ptx.cuh"
 #include "tled/cuda/cuda_view.cuh"
+#include "tled/cuda/cuda_warp.cuh"
 
 extern "C" {
 #include "surface/hash.h"
@@ -94,14 +95,6 @@ typedef struct cuda_touch {
 
 /* ---- of a warp, a block, and all of them */
 
-/* The same sum in each of its threads. */
-static __device__ double warp_sum(double x)
-{
-    for (int with = 16; with; with /= 2)
-        x += __shfl_xor_sync(~0u, x, with);
-    return x;
-}
-
 static __device__ void warp_sums(double *x, int count)
 {
     for (int a = 0; a < count; a++)
@@ -119,22 +112,12 @@ static __device__ double of_bits(skin_whole bits)
 }
 
 /* Raises *to to the bits of the most of all threads of a block, which all call it. */
-static __device__ void block_most(double mine, skin_whole *to)
+static __device__ void raise_most(double mine, skin_whole *to)
 {
-    __shared__ double most[SKIN_WARPS];
-    for (int with = 16; with; with /= 2) {
-        const double other = __shfl_xor_sync(~0u, mine, with);
-        mine = mine > other ? mine : other;
-    }
-    __syncthreads();
-    if (threadIdx.x % 32 == 0)
-        most[threadIdx.x / 32] = mine;
-    __syncthreads();
-    if (threadIdx.x)
-        return;
-    for (int w = 1; w < SKIN_WARPS; w++)
-        mine = mine > most[w] ? mine : most[w];
-    atomicMax(to, bits_of(mine));
+    __shared__ double scratch[SKIN_WARPS];
+    const double most = block_most<SKIN_THREADS>(mine, scratch);
+    if (threadIdx.x == 0)
+        atomicMax(to, bits_of(most));
 }
 
 /* Waits until the first so many blocks, which alone call it, have come here; *phase counts. */

@@ -5,6 +5,11 @@
 #define SINEW_CUDA_STATE_CUH
 
 #include "solve/card_layout.cuh"
+
+extern "C" {
+#include "tled/tiles/tile_parts.h"
+}
+
 #include "tled/cuda/cuda_press.cuh"
 #include "tled/cuda/cuda_resident.cuh"
 #include "tled/cuda/cuda_skin_make.cuh"
@@ -200,6 +205,14 @@ static int law_numbers(const tled_problem *p)
     return form_numbers(p->form) + cuda_held(p->control.kind);
 }
 
+/* The bones that nodes slide on, or that skin may not enter; NULL: there are none. */
+static const sliding *bones_of(const tled_problem *p)
+{
+    if (p->sliding)
+        return p->sliding;
+    return p->self_contact && p->self_contact->solids ? p->self_contact->bones : NULL;
+}
+
 /* What does not change while the run goes on. */
 static void list_problem(cuda_state *s, const cuda_numbers *numbers, card_layout *l)
 {
@@ -227,12 +240,15 @@ static void list_problem(cuda_state *s, const cuda_numbers *numbers, card_layout
     card_layout_copy(l, &v->moments, p->cut.of, CUT_MOMENTS * p->cut.count);
     card_layout_copy(l, &v->weight, numbers->weight, t->nodes);
     v->directions = t->directions;
+    const sliding *bones = bones_of(p);
+    if (bones) {
+        s->sliders.ground = bones->ground;
+        card_layout_copy(l, &s->sliders.ground.field, bones->field, bones->fields);
+        card_layout_copy(l, &s->sliders.ground.value, bones->ground.value, sliding_samples(bones));
+    }
     if (p->sliding) {
-        s->sliders.ground = p->sliding->ground;
         s->sliders.count = (int32_t)p->sliding->count;
         card_layout_copy(l, &s->sliders.slider, numbers->slider, p->sliding->count);
-        card_layout_copy(l, &s->sliders.ground.field, p->sliding->field, p->sliding->fields);
-        card_layout_copy(l, &s->sliders.ground.value, p->sliding->ground.value, sliding_samples(p->sliding));
     }
     if (p->collider) {
         card_layout_copy(l, &s->position, numbers->position, 3 * p->nodes);
@@ -489,60 +505,21 @@ static int put_skin(cuda_state *s, err *e)
     if (!s->p->self_contact)
         return 0;
     int32_t *stand = make_stand(s, e);
-    s->skin_bytes = stand ? skin_make(&s->skin, s->p, stand, &s->skin_memory, e) : -1;
+    s->skin_bytes = stand ? skin_make(&s->skin, s->p, stand, &s->sliders.ground, &s->skin_memory, e) : -1;
     free(stand);
     s->skin_blocks = skin_blocks(s->p->self_contact);
     return s->skin_bytes < 0 ? -1 : 0;
 }
 
-/* Whether a tile has one of the nodes, by where they stand. */
-static bool tile_has(const tiles *t, int64_t i, const uint8_t *about)
-{
-    const tile *of = &t->tile[i];
-    bool has = false;
-    for (int32_t k = of->node; k < of->node + of->nodes; k++)
-        has |= about[k];
-    for (int32_t k = of->halo; k < of->halo + of->halos; k++)
-        has |= about[t->halo_node[k]];
-    return has;
-}
-
-/* Puts tiles that have a node about skin, their own or not, behind all others: these need not wait for it. */
+/* Puts tiles that have a node about skin behind all others, which need not wait for it. */
 static int part_tiles(cuda_state *s, err *e)
 {
-    tiles *t = &s->tiles;
     const self_contact *c = s->p->self_contact;
     if (!c || !s->method->parts)
         return 0;
-    uint8_t *is = (uint8_t *)mem_array(s->p->nodes, 2, "the solver", e), *about = is + s->p->nodes;
-    tile *part = is ? (tile *)mem_array(t->count, sizeof *part, "the solver", e) : NULL;
-    int32_t *list = part ? (int32_t *)mem_array(t->list ? t->count : 0, sizeof *list, "the solver", e) : NULL;
-    for (int64_t i = 0; list && i < c->nodes; i++)
-        is[c->node[i]] = 1;
-    for (int64_t k = 0; list && k < t->nodes; k++)
-        about[k] = is[t->node[k]];
-    int64_t others = 0;
-    for (int pass = 0; list && pass < 2; pass++)
-        for (int64_t i = 0, to = pass ? others : 0; i < t->count; i++) {
-            if (tile_has(t, i, about) != pass)
-                continue;
-            part[to] = t->tile[i];
-            if (t->list)
-                list[to] = t->list[i];
-            others += !pass;
-            to++;
-        }
-    if (list) {
-        memcpy(t->tile, part, (size_t)t->count * sizeof *part);
-        if (t->list)
-            memcpy(t->list, list, (size_t)t->count * sizeof *list);
-        s->skin_tiles = others ? t->count - others : 0;
-    }
-    const bool failed = !list;
-    free(list);
-    free(part);
-    free(is);
-    return failed ? -1 : 0;
+    const int64_t last = tiles_part(&s->tiles, c->node, c->nodes, e);
+    s->skin_tiles = last < s->tiles.count ? last : 0;
+    return last < 0 ? -1 : 0;
 }
 
 #endif

@@ -1,5 +1,5 @@
-/* Which cells a tile owns; sums, the largest and the least over warps and blocks, and a look's answers put together: in
- * one order, whichever ends first. Included by cuda_look.cu alone.
+/* Which cells a tile owns; the least over warps and blocks, and a look's answers put together: in one order, whichever
+ * ends first. Included by cuda_look.cu alone.
  */
 #ifndef SINEW_CUDA_SUMS_CUH
 #define SINEW_CUDA_SUMS_CUH
@@ -13,42 +13,17 @@ extern "C" {
 #include "tled/tiles/tiles.h"
 }
 
+#include "tled/cuda/cuda_warp.cuh"
+
 enum { NONE = INT32_MAX }; /* of cells; the least of some is told */
 
 /* Over a warp; all its threads get it. */
-static __device__ double warp_sum(double x)
-{
-    for (int with = 16; with; with /= 2)
-        x += __shfl_xor_sync(~0u, x, with);
-    return x;
-}
-
-static __device__ double warp_most(double x)
-{
-    for (int with = 16; with; with /= 2)
-        x = fmax(x, __shfl_xor_sync(~0u, x, with));
-    return x;
-}
-
 static __device__ int warp_least(int x)
 {
     for (int with = 16; with; with /= 2) {
         const int other = __shfl_xor_sync(~0u, x, with);
         x = other < x ? other : x;
     }
-    return x;
-}
-
-/* The largest over a block. scratch: a number a warp. */
-template <int THREADS> static __device__ double block_most(double x, double *scratch)
-{
-    x = warp_most(x);
-    __syncthreads();
-    if (threadIdx.x % 32 == 0)
-        scratch[threadIdx.x / 32] = x;
-    __syncthreads();
-    for (int i = 0; i < THREADS / 32; i++)
-        x = fmax(x, scratch[i]);
     return x;
 }
 
