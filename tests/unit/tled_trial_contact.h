@@ -8,7 +8,7 @@
 #include "tled/cuda/cuda.h"
 #include "tled_trial.h"
 
-/* Whether what was done without something differs from what was done with it, by more than so much; both are freed. */
+/* Checks that the two answers differ by more than `least`, and frees both. */
 static inline void test_matters(answer *without, answer *with, double least, const char *what)
 {
     const double apart = off(with, without);

@@ -388,14 +388,14 @@ static int put_flags(cuda_state *s, err *e)
     return failed ? -1 : 0;
 }
 
-/* What the script does to bones. */
+/* Puts anew what the script does to bones. */
 static int put_bones(cuda_state *s, err *e)
 {
     const sliding *of = bones_of(s->p);
     return of ? put_array(s, s->sliders.ground.field, of->field, of->fields * (int64_t)sizeof *of->field, e) : 0;
 }
 
-/* To nodes that slide. */
+/* Puts anew what it does to nodes that slide. */
 static int put_sliders(cuda_state *s, err *e)
 {
     const sliding *of = s->p->sliding;
@@ -405,7 +405,7 @@ static int put_sliders(cuda_state *s, err *e)
     return failed ? -1 : 0;
 }
 
-/* And to nodes about skin. */
+/* Puts anew which nodes about skin it holds. */
 static int put_skin_nodes(cuda_state *s, err *e)
 {
     const self_contact *of = s->p->self_contact;
