@@ -56,7 +56,8 @@ DEFORMED_FUNCTION void contact_blend_from(const double *side, int c, bool own, c
 /* Corner k's part in its element's slope along an axis, 1/m. */
 DEFORMED_FUNCTION double contact_blend_slope(const double *side, int k, int axis)
 {
-    return (deformed_corner(k, axis) ? 1 : -1) / (4 * side[axis]);
+    const double slope = 1 / (4 * side[axis]); /* of all corners, so that loops over them divide once */
+    return deformed_corner(k, axis) ? slope : -slope;
 }
 
 /* The share, at a place that is `from` (m) from that of a map, of a node with these coefficients; and of node k of an

@@ -219,10 +219,10 @@ CONTACT_FUNCTION bool contact_share_node(const self_contact *c, int32_t one, int
 /* Tells whether x lies in the box of an element, with its margins. */
 CONTACT_FUNCTION bool contact_in_box(const contact_table *t, int32_t element, const double *x)
 {
+    bool is = true;
     for (int a = 0; a < 3; a++)
-        if (!(x[a] >= t->low[3 * (int64_t)element + a] && x[a] <= t->high[3 * (int64_t)element + a]))
-            return false;
-    return true;
+        is &= x[a] >= t->low[3 * (int64_t)element + a] && x[a] <= t->high[3 * (int64_t)element + a];
+    return is;
 }
 
 /* Whether an element's box meets that of samples (low, high). */

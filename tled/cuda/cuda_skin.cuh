@@ -71,7 +71,7 @@ static int64_t skin_blocks(const self_contact *c)
         cudaDeviceGetAttribute(&together, cudaDevAttrCooperativeLaunch, device) != cudaSuccess || !together)
         return 1;
     const int64_t useful = (c->nodes + SKIN_BLOCK_NODES - 1) / SKIN_BLOCK_NODES;
-    const int64_t most = processors < SKIN_BLOCKS ? processors : SKIN_BLOCKS;
+    const int64_t part = (SKIN_FIFTHS * processors + 4) / 5, most = part < SKIN_BLOCKS ? part : SKIN_BLOCKS;
     return useful < most ? useful : most;
 }
 

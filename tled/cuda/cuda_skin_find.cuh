@@ -52,28 +52,31 @@ static __device__ void gather(const cuda_touch &k, int odd)
 
 /* ---- the table */
 
-/* Calls f with each of 0 to count - 1, in the warp that is free first; ticket: 0 at first. */
+/* Calls f with each of 0 to count - 1: each warp with one, and then that which is free first; ticket: 0 at first. */
 template <class F> static __device__ void for_warps(int32_t count, int32_t *ticket, skin_desk *desk, F f)
 {
     const int lane = (int)threadIdx.x % 32;
-    for (;;) {
+    const int32_t warps = (int32_t)gridDim.x * SKIN_WARPS;
+    for (int32_t i = (int32_t)(blockIdx.x + gridDim.x * (threadIdx.x / 32)); i < count; i = desk->slot) {
+        f(i, lane);
         __syncwarp();
         if (lane == 0)
-            desk->slot = atomicAdd(ticket, 1);
+            desk->slot = count > warps ? warps + atomicAdd(ticket, 1) : count;
         __syncwarp();
-        const int32_t i = desk->slot;
-        if (i >= count)
-            return;
-        f(i, lane);
     }
 }
 
 static __device__ void warp_place(const cuda_skin &s, int64_t sample, int lane, double *x)
 {
+    const int32_t first = s.c.lever_start[sample], end = s.c.lever_start[sample + 1];
     x[0] = x[1] = x[2] = 0;
-    for (int32_t i = s.c.lever_start[sample] + lane; i < s.c.lever_start[sample + 1]; i += 32)
+#pragma unroll
+    for (int j = 0; j < BLEND_MOST / 32; j++) {
+        const int32_t i = first + lane + 32 * j, node = i < end ? s.c.lever_node[i] : 0;
+        const double share = i < end ? s.c.lever_share[i] : 0;
         for (int a = 0; a < 3; a++)
-            x[a] += s.c.lever_share[i] * s.x[3 * (int64_t)s.c.lever_node[i] + a];
+            x[a] += share * s.x[3 * (int64_t)node + a];
+    }
     warp_sums(x, 3);
 }
 
@@ -242,13 +245,20 @@ static __device__ bool is_better(const skin_rank &one, const skin_rank &other)
 static __device__ int warp_in_boxes(const cuda_skin &s, const int32_t *list, int count, int lane, const double *x,
                                     skin_desk *desk)
 {
+    enum { EACH = CONTACT_CANDIDATES / 32 };
+    bool is[EACH];
     int found = 0;
     __syncwarp();
-    for (int i = 0; i < count; i += 32) {
-        const bool is = i + lane < count && contact_in_box(&s.table, list[i + lane], x);
-        const unsigned which = __ballot_sync(~0u, is);
-        if (is)
-            desk->list[found + __popc(which & ((1u << lane) - 1))] = i + lane;
+#pragma unroll
+    for (int k = 0; k < EACH; k++) {
+        const int i = lane + 32 * k;
+        is[k] = contact_in_box(&s.table, list[i < count ? i : 0], x) & (i < count);
+    }
+#pragma unroll
+    for (int k = 0; k < EACH; k++) {
+        const unsigned which = __ballot_sync(~0u, is[k]);
+        if (is[k])
+            desk->list[found + __popc(which & ((1u << lane) - 1))] = lane + 32 * k;
         found += __popc(which);
     }
     __syncwarp();
@@ -373,26 +383,46 @@ static __device__ void warp_take_shares(const cuda_skin &s, const double *place,
 
 /* ---- contacts */
 
-/* Adds a contact to those that are found; t: the same in all threads of the warp, but for where its nodes are. Returns
- * its slot. */
-static __device__ int32_t warp_slot(const cuda_skin &s, int odd, int lane, skin_desk *desk)
+/* So many of a list's slots, for a warp; the first. */
+static __device__ int32_t warp_slots(int32_t *taken, int count, int lane, skin_desk *desk)
 {
     __syncwarp();
     if (lane == 0)
-        desk->slot = atomicAdd(&s.all->touches[odd], 1);
+        desk->slot = atomicAdd(taken, count);
     __syncwarp();
     return desk->slot;
 }
 
-/* The parts of its sides, and its shares at its nodes. */
-static __device__ void warp_add(const cuda_skin &s, int odd, int lane, int32_t slot, touch *t)
+/* Puts nodes that had no contact before on the list of those that have. */
+static __device__ void warp_about(const cuda_skin &s, int odd, int lane, const skin_lever &l, const skin_whole *was,
+                                  skin_desk *desk)
 {
-    __syncwarp();
+    unsigned which[SKIN_EACH];
+    int count = 0;
+#pragma unroll
+    for (int j = 0; j < SKIN_EACH; j++) {
+        which[j] = __ballot_sync(~0u, was[j] == 0);
+        count += __popc(which[j]);
+    }
+    int32_t at = count ? warp_slots(&s.all->abouts[odd], count, lane, desk) : 0;
+#pragma unroll
+    for (int j = 0; j < SKIN_EACH; j++) {
+        if (was[j] == 0)
+            s.about[at + __popc(which[j] & ((1u << lane) - 1))] = l.node[j];
+        at += __popc(which[j]);
+    }
+}
+
+/* Adds a contact to those that are found, with the parts of its sides, and its shares to its nodes; t: the same in all
+ * threads of the warp. */
+static __device__ void warp_add(const cuda_skin &s, int odd, int lane, touch *t, skin_desk *desk)
+{
+    const int32_t slot = warp_slots(&s.all->touches[odd], 1, lane, desk);
     const skin_lever l = lever_of(s, *t, lane);
     double mass[2] = {0, 0};
 #pragma unroll
     for (int j = 0; j < SKIN_EACH; j++) {
-        const double part = l.share[j] != 0 ? l.share[j] * s.node[l.node[j]].mass : 0;
+        const double part = l.share[j] * s.node[l.node[j]].mass;
         mass[0] += l.place >> j & 1 ? 0 : part;
         mass[1] -= l.place >> j & 1 ? part : 0;
     }
@@ -404,10 +434,7 @@ static __device__ void warp_add(const cuda_skin &s, int odd, int lane, int32_t s
         const double part = t->part[l.place >> j & 1] * fabs(l.share[j]);
         was[j] = l.share[j] != 0 ? atomicAdd(&s.sum[l.node[j]], whole_of(part, 1 / SKIN_SHARE_UNIT) + 1) : 1;
     }
-#pragma unroll
-    for (int j = 0; j < SKIN_EACH; j++)
-        if (was[j] == 0)
-            s.about[atomicAdd(&s.all->abouts[odd], 1)] = l.node[j];
+    warp_about(s, odd, lane, l, was, desk);
     if (lane == 0)
         s.found[slot] = *t;
 }
@@ -447,11 +474,10 @@ static __device__ void warp_skin(const cuda_touch &k, int64_t sample, int lane, 
         s.until[sample] = drift + CONTACT_SPARE * clear;
     if (!is)
         return;
-    const int32_t slot = warp_slot(s, odd, lane, desk);
     t.node = s.place_node + (int64_t)s.place_most * sample;
     t.share = s.place_share + (int64_t)s.place_most * sample;
     warp_take_shares(s, place, lane, &t, desk);
-    warp_add(s, odd, lane, slot, &t);
+    warp_add(s, odd, lane, &t, desk);
 }
 
 /* Whether it touches bone; as find_deepest of contact_bone.c. */
@@ -480,7 +506,7 @@ static __device__ void warp_bone(const cuda_touch &k, int64_t sample, int lane, 
             *until = clear > 0 ? come + CONTACT_SPARE * clear : 0;
     }
     if (deepest.sides)
-        warp_add(s, odd, lane, warp_slot(s, odd, lane, desk), &deepest);
+        warp_add(s, odd, lane, &deepest, desk);
 }
 
 /* Whether a sample may touch skin, and bone. */

@@ -13,9 +13,10 @@ static cuda_skin_node *skin_nodes(const tled_problem *p, const int32_t *stand, e
     cuda_skin_node *to = (cuda_skin_node *)mem_array(c->nodes, sizeof *to, "the skin", e);
     for (int64_t i = 0; to && i < c->nodes; i++) {
         const int64_t n = c->node[i];
+        to[i].free = 0;
         for (int a = 0; a < 3; a++) {
             to[i].position[a] = p->position[3 * n + a];
-            to[i].is_free[a] = p->hold[3 * n + a] == HOLD_FREE;
+            to[i].free |= (uint32_t)(p->hold[3 * n + a] == HOLD_FREE) << a;
         }
         to[i].mass = p->mass[n];
         to[i].stand = stand[n];

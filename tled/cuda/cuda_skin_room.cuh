@@ -21,6 +21,8 @@ enum {
     SKIN_THREADS = 256,
     SKIN_WARPS = SKIN_THREADS / 32,
     SKIN_TOGETHER = 2,                     /* blocks that a multiprocessor is to have registers for */
+    SKIN_FIFTHS = 3,                       /* of multiprocessors: the others go on with the pass beside */
+    SKIN_TOUCHES = 2,                      /* contacts that are worth a block */
     SKIN_BLOCK_NODES = 96,                 /* the least that a block is worth its waiting for */
     SKIN_BLOCKS = SKIN_THREADS,            /* the most: each is waited for by a thread */
     SKIN_PHASES = 16 + 2 * CONTACT_PASSES, /* no fewer than a launch has */
@@ -42,7 +44,7 @@ typedef unsigned long long skin_whole; /* a signed whole number, modulo 2^64 */
 typedef struct cuda_skin_node {
     double position[3], mass; /* m, at rest; kg */
     int32_t stand;            /* where it stands */
-    int32_t is_free[3];       /* its components: nothing holds them */
+    uint32_t free;            /* bits: its components that nothing holds */
 } cuda_skin_node;
 
 /* Numbers of all, by parity where there are two. */
@@ -97,8 +99,10 @@ typedef struct cuda_touch {
 
 static __device__ void warp_sums(double *x, int count)
 {
-    for (int a = 0; a < count; a++)
-        x[a] = warp_sum(x[a]);
+#pragma unroll
+    for (int with = 16; with; with /= 2)
+        for (int a = 0; a < count; a++)
+            x[a] += __shfl_xor_sync(~0u, x[a], with);
 }
 
 static __device__ skin_whole bits_of(double at_least_0)
@@ -158,11 +162,12 @@ typedef struct skin_desk {
 
 /* ---- nodes of contacts */
 
-/* Those that a thread of a warp has of a contact: both sides'. */
+/* Those that a thread of a warp has of a contact: both sides'. Loops over them take all, so that what they read is
+ * asked for at once: of none, node 0 with share 0. */
 typedef struct skin_lever {
     int32_t node[SKIN_EACH];
     double share[SKIN_EACH]; /* 0: there is none; below 0 on the place's side, but where shares are so */
-    uint32_t place;          /* bits: of the place's side */
+    uint32_t place, free;    /* bits: of the place's side; three a node, as cuda_skin_node.free */
 } skin_lever;
 
 static __device__ skin_lever lever_of(const cuda_skin &s, const touch &t, int lane)
@@ -170,18 +175,21 @@ static __device__ skin_lever lever_of(const cuda_skin &s, const touch &t, int la
     const int32_t from = s.c.lever_start[t.sample], own = s.c.lever_start[t.sample + 1] - from;
     const int count = own + (t.sides > 1 ? t.count : 0);
     skin_lever l;
-    l.place = 0;
+    l.place = l.free = 0;
 #pragma unroll
     for (int j = 0; j < SKIN_EACH; j++) {
         const int i = lane + 32 * j;
-        const bool is = i < count, place = i >= own;
-        l.node[j] = 0;
-        l.share[j] = 0;
-        if (is) {
-            l.node[j] = place ? t.node[i - own] : s.c.lever_node[from + i];
-            l.share[j] = place ? -t.share[i - own] : s.c.lever_share[from + i];
-        }
+        const bool place = i >= own;
+        const int32_t *node = place ? t.node + (i - own) : s.c.lever_node + (from + i);
+        const double *share = place ? t.share + (i - own) : s.c.lever_share + (from + i);
+        l.node[j] = i < count ? *node : 0;
+        l.share[j] = i < count ? *share : 0;
         l.place |= (uint32_t)place << j;
+    }
+#pragma unroll
+    for (int j = 0; j < SKIN_EACH; j++) {
+        l.share[j] = l.place >> j & 1 ? -l.share[j] : l.share[j];
+        l.free |= l.share[j] != 0 ? s.node[l.node[j]].free << 3 * j : 0;
     }
     return l;
 }

@@ -14,7 +14,7 @@ static __device__ void warp_relative(const cuda_skin &s, const skin_lever &l, co
     to[0] = to[1] = to[2] = 0;
 #pragma unroll
     for (int j = 0; j < SKIN_EACH; j++)
-        for (int a = 0; a < 3 && l.share[j] != 0; a++)
+        for (int a = 0; a < 3; a++)
             to[a] += l.share[j] * of_whole(way[3 * (int64_t)l.node[j] + a], unit);
     warp_sums(to, 3);
 }
@@ -25,9 +25,8 @@ static __device__ void warp_speed(const cuda_touch &k, const skin_lever &l, doub
     to[0] = to[1] = to[2] = 0;
 #pragma unroll
     for (int j = 0; j < SKIN_EACH; j++) {
-        real v[3] = {0, 0, 0};
-        if (l.share[j] != 0)
-            cuda_three<false>(k.view, k.velocity, k.skin.node[l.node[j]].stand, v);
+        real v[3];
+        cuda_three<false>(k.view, k.velocity, k.skin.node[l.node[j]].stand, v);
         for (int a = 0; a < 3; a++)
             to[a] += l.share[j] * (double)v[a];
     }
@@ -41,8 +40,8 @@ static __device__ void warp_push(const cuda_skin &s, const touch &t, const skin_
     const double per_unit = 1 / way_unit(s);
 #pragma unroll
     for (int j = 0; j < SKIN_EACH; j++)
-        for (int a = 0; a < 3 && l.share[j] != 0; a++)
-            if (s.node[l.node[j]].is_free[a])
+        for (int a = 0; a < 3; a++)
+            if (l.free >> (3 * j + a) & 1)
                 atomicAdd(&to[3 * (int64_t)l.node[j] + a],
                           whole_of(t.part[l.place >> j & 1] * l.share[j] * way[a], per_unit));
 }
@@ -53,9 +52,9 @@ static __device__ double warp_width(const cuda_skin &s, const touch &t, const sk
 #pragma unroll
     for (int j = 0; j < SKIN_EACH; j++) {
         double square = 0;
-        for (int a = 0; a < 3 && l.share[j] != 0; a++)
-            square += s.node[l.node[j]].is_free[a] ? t.normal[a] * t.normal[a] : 0;
-        width += l.share[j] != 0 ? fabs(l.share[j]) * of_whole(s.sum[l.node[j]], SKIN_SHARE_UNIT) * square : 0;
+        for (int a = 0; a < 3; a++)
+            square += l.free >> (3 * j + a) & 1 ? t.normal[a] * t.normal[a] : 0;
+        width += fabs(l.share[j]) * of_whole(s.sum[l.node[j]], SKIN_SHARE_UNIT) * square;
     }
     return warp_sum(width);
 }
@@ -133,7 +132,7 @@ static __device__ void end_component(const cuda_touch &k, int64_t i, int last)
     const double pushed = of_whole(s.change[last % SKIN_CHANGES][i], unit);
     const bool is_rubbed = last >= CONTACT_PASSES;
     const double moved = (is_rubbed ? s.moved[i] : 0) + pushed, speed = (came + (is_rubbed ? pushed : 0)) / k.dt;
-    if (n.is_free[i % 3]) {
+    if (n.free >> i % 3 & 1) {
         const int64_t at = k.view.offset[i % 3] + n.stand * k.view.along;
         k.to[at] = (real)((double)k.to[at] + moved);
         k.velocity[at] = (real)((double)k.velocity[at] + speed);
@@ -143,10 +142,11 @@ static __device__ void end_component(const cuda_touch &k, int64_t i, int last)
     s.fresh[i] = 0;
 }
 
-/* How many blocks it takes. */
+/* How many blocks it takes. They have few contacts each: to read and add up the nodes of many takes one multiprocessor
+ * longer than more blocks wait for each other. */
 static __device__ unsigned solving(int32_t touches)
 {
-    const unsigned blocks = (unsigned)(touches + SKIN_WARPS - 1) / SKIN_WARPS;
+    const unsigned blocks = (unsigned)(touches + SKIN_TOUCHES - 1) / SKIN_TOUCHES;
     return blocks < gridDim.x ? blocks : gridDim.x;
 }
 
