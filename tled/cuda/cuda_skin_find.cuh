@@ -57,12 +57,9 @@ template <class F> static __device__ void for_warps(int32_t count, int32_t *tick
 {
     const int lane = (int)threadIdx.x % 32;
     const int32_t warps = (int32_t)gridDim.x * SKIN_WARPS;
-    for (int32_t i = (int32_t)(blockIdx.x + gridDim.x * (threadIdx.x / 32)); i < count; i = desk->slot) {
+    for (int32_t i = warp_number(gridDim.x); i < count;) {
         f(i, lane);
-        __syncwarp();
-        if (lane == 0)
-            desk->slot = count > warps ? warps + atomicAdd(ticket, 1) : count;
-        __syncwarp();
+        i = count > warps ? warps + warp_slots(ticket, 1, lane, desk) : count;
     }
 }
 
@@ -182,8 +179,7 @@ static __device__ void list_elements(const cuda_touch &k, uint32_t *phase, skin_
     const contact_table *t = &s.table;
     for_all(t->cells, [&](int64_t i) { t->filled[i] = s.taken[i] = 0; });
     for_all(3 * s.c.nodes, [&](int64_t i) { s.listed[i] = s.x[i]; });
-    const int64_t warp = blockIdx.x + (int64_t)gridDim.x * (threadIdx.x / 32);
-    for (int64_t i = warp; i < s.c.samples; i += (int64_t)gridDim.x * SKIN_WARPS) {
+    for (int64_t i = warp_number(gridDim.x); i < s.c.samples; i += (int64_t)gridDim.x * SKIN_WARPS) {
         double x[3];
         warp_place(s, i, (int)threadIdx.x % 32, x);
         if (threadIdx.x % 32 < 3)
@@ -258,7 +254,7 @@ static __device__ int warp_in_boxes(const cuda_skin &s, const int32_t *list, int
     for (int k = 0; k < EACH; k++) {
         const unsigned which = __ballot_sync(~0u, is[k]);
         if (is[k])
-            desk->list[found + __popc(which & ((1u << lane) - 1))] = lane + 32 * k;
+            desk->list[found + warp_before(which, lane)] = lane + 32 * k;
         found += __popc(which);
     }
     __syncwarp();
@@ -372,7 +368,7 @@ static __device__ void warp_take_shares(const cuda_skin &s, const double *place,
         const double share = i + lane < s.blend.count[t->element] ? desk->share[i + lane] : 0;
         const bool is = fabs(share) > BLEND_LEAST;
         const unsigned which = __ballot_sync(~0u, is);
-        const int at = t->count + __popc(which & ((1u << lane) - 1));
+        const int at = t->count + warp_before(which, lane);
         if (is) {
             t->node[at] = node[i + lane];
             t->share[at] = share;
@@ -382,16 +378,6 @@ static __device__ void warp_take_shares(const cuda_skin &s, const double *place,
 }
 
 /* ---- contacts */
-
-/* So many of a list's slots, for a warp; the first. */
-static __device__ int32_t warp_slots(int32_t *taken, int count, int lane, skin_desk *desk)
-{
-    __syncwarp();
-    if (lane == 0)
-        desk->slot = atomicAdd(taken, count);
-    __syncwarp();
-    return desk->slot;
-}
 
 /* Puts nodes that had no contact before on the list of those that have. */
 static __device__ void warp_about(const cuda_skin &s, int odd, int lane, const skin_lever &l, const skin_whole *was,
@@ -408,7 +394,7 @@ static __device__ void warp_about(const cuda_skin &s, int odd, int lane, const s
 #pragma unroll
     for (int j = 0; j < SKIN_EACH; j++) {
         if (was[j] == 0)
-            s.about[at + __popc(which[j] & ((1u << lane) - 1))] = l.node[j];
+            s.about[at + warp_before(which[j], lane)] = l.node[j];
         at += __popc(which[j]);
     }
 }

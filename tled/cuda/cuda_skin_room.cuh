@@ -160,6 +160,28 @@ typedef struct skin_desk {
     int32_t slot, cell[32], start[32], filled[32], count, list[SKIN_LISTED];
 } skin_desk;
 
+/* Of a warp, among those of the first so many blocks: neighbours are in other blocks. */
+static __device__ int32_t warp_number(unsigned blocks)
+{
+    return (int32_t)(blockIdx.x + blocks * (threadIdx.x / 32));
+}
+
+/* Of the threads that a ballot names, those before this one. */
+static __device__ int warp_before(unsigned which, int lane)
+{
+    return __popc(which & ((1u << lane) - 1));
+}
+
+/* Takes so many of a list's slots for a warp. Returns the first. */
+static __device__ int32_t warp_slots(int32_t *taken, int count, int lane, skin_desk *desk)
+{
+    __syncwarp();
+    if (lane == 0)
+        desk->slot = atomicAdd(taken, count);
+    __syncwarp();
+    return desk->slot;
+}
+
 /* ---- nodes of contacts */
 
 /* Those that a thread of a warp has of a contact: both sides'. Loops over them take all, so that what they read is

@@ -158,7 +158,7 @@ static __device__ void solve(const cuda_touch &k, int odd, uint32_t *phase)
     const int32_t touches = s.all->touches[odd], abouts = s.all->abouts[odd];
     const int lane = (int)threadIdx.x % 32, passes = (s.c.friction > 0 ? 2 : 1) * CONTACT_PASSES;
     const unsigned blocks = solving(touches);
-    const int32_t warp = (int32_t)(blockIdx.x + blocks * (threadIdx.x / 32)), warps = blocks * SKIN_WARPS;
+    const int32_t warp = warp_number(blocks), warps = blocks * SKIN_WARPS;
     touch t;
     skin_lever l;
     for (int pass = 0; pass < passes; pass++) {
