@@ -185,7 +185,7 @@ same: all
 	tests/same $(BIN) $(WITH)
 
 # ---- benchmarks: CSV, on standard output and in out/bench.csv, a table each; tests/bench keeps one of each machine
-.PHONY: bench bench-tled bench-table1 bench-voxelise bench-geometry bench-msds bench-msds_card bench-images bench-slice bench-fraction bench-accuracy bench-console compare-msds
+.PHONY: bench bench-tled bench-table1 bench-voxelise bench-geometry bench-msds bench-msds_card bench-images bench-slice bench-contact bench-fraction bench-accuracy bench-console compare-msds
 BENCHES = voxelise geometry tled msds msds_card images slice
 BENCH_HEAD = $(wildcard $(or $(SINEW_SHARED),../shared)/data/ultrasound/fetal-head)
 BENCH_FACE = $(wildcard $(or $(SINEW_SHARED),../shared)/data/face/face_zyg.obj)
@@ -200,7 +200,7 @@ $(BUILD)/tests/bench/bench_tled: $(BUILD)/tests/bench/card_roof.o
 endif
 bench: all $(BENCHES:%=$(BUILD)/tests/bench/bench_%)
 	@mkdir -p out
-	@{ tests/bench/machine; for name in $(BENCHES) table1; do echo "# $$name"; \
+	@{ tests/bench/machine; for name in $(BENCHES) table1 contact; do echo "# $$name"; \
 	    $(MAKE) --no-print-directory -s bench-$$name || echo '# failed'; done; } | tee out/bench.csv
 	@! grep -q '^# failed' out/bench.csv
 bench-tled: all $(BUILD)/tests/bench/bench_tled $(BENCH_MODELS)
@@ -208,6 +208,14 @@ bench-tled: all $(BUILD)/tests/bench/bench_tled $(BENCH_MODELS)
 # W&M's Table 1 on our samples.
 bench-table1: all $(BUILD)/tests/bench/bench_tled
 	@tests/bench/table1 $(BIN) $(BUILD)/tests/bench/bench_tled $(BUILD)/tests/bench/table1 $(shell nproc)
+# What slits, sliding and skin that touches itself add to a step, on a real face with muscles: on the CPU, and on a card if there is one.
+CONTACT_FACE = $(wildcard $(or $(SINEW_SHARED),../shared)/data/face/face_all.obj)
+CONTACT_SIDES = 2.5
+CONTACT_SIDES_CARD = 2.5 1.25
+CONTACT_RUN = tests/bench/contact $(BIN) $(CONTACT_FACE) $(BUILD)/tests/bench/contact-models $(shell nproc)
+bench-contact: all
+	@$(if $(CONTACT_FACE),$(CONTACT_RUN) 3 cpu $(CONTACT_SIDES),echo '# skipped: no face_all.obj in SINEW_SHARED')
+	@! nvidia-smi >/dev/null 2>&1 || $(if $(CONTACT_FACE),$(CONTACT_RUN) 7 cuda $(CONTACT_SIDES_CARD),true)
 $(BUILD)/tests/bench/face_%mm: all
 	@mkdir -p $(@D)
 	@$(BIN)/voxelise -q --unit mm -s $* $(BENCH_FACE) | $(BIN)/attach -q -o $@
@@ -433,7 +441,7 @@ help:
 	'make browser      the HTML pages of make paper and make html, and the console, in headless chromium' \
 	'' \
 	'make bench        how long things take, beside a probe of the machine; into out/bench.csv' \
-	'make bench-voxelise, -geometry, -tled, -table1, -msds, -slice, -images   its parts (TRIANGLES=100000: of the scan)' \
+	'make bench-voxelise, -geometry, -tled, -table1, -msds, -slice, -images, -contact   its parts (TRIANGLES=100000: of the scan)' \
 	'make compare-msds    how far springs are from finite elements' \
 	'make bench-fraction  how fast models converge, by centres and by shares' \
 	'make bench-accuracy  error against wall time, beside CalculiX; out/accuracy.csv and out/accuracy.svg' \

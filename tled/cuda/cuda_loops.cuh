@@ -49,45 +49,51 @@ static int put_table(cuda_state *s, const tled_plan *plan, int64_t first, int64_
                : 0;
 }
 
+/* What follows a pass that begins a step goes on beside the next pass, of which only the late tiles wait for it. */
+static int go_beside(cuda_state *s, const cuda_batch *b, err *e)
+{
+    s->beside_due = s->late_tiles > 0 && b->first < b->count;
+    if (!s->beside_due)
+        return 0;
+    return CUDA_TRY(cudaEventRecord(s->before_beside, s->stream)) ||
+                   CUDA_TRY(cudaStreamWaitEvent(s->beside, s->before_beside))
+               ? -1
+               : 0;
+}
+
 /* The steps of nodes that slide, after a pass that left them where they were. */
-static int slide(cuda_state *s, const cuda_batch *b, err *e)
+static cuda_slide sliding_of(const cuda_state *s, const cuda_batch *b)
 {
     const int64_t row = 3 * s->p->script->curves;
     const bool begins = b->first < b->count;
-    if (!s->p->sliding)
-        return 0;
-    const cuda_slide c = {s->view,
-                          s->sliders,
-                          begins ? s->spare : s->field[TLED_DISPLACEMENT],
-                          begins ? s->field[TLED_DISPLACEMENT] : s->spare,
-                          s->field[TLED_VELOCITY],
-                          b->rows - row,
-                          b->rows,
-                          b->rows + row,
-                          {1 / b->plan->rate, b->plan->damping, b->first > 0, begins, NULL}};
-    return card_check(slide_start(c, s->stream), "the start of sliding", s->step, e);
+    return {s->view,
+            s->sliders,
+            begins ? s->spare : s->field[TLED_DISPLACEMENT],
+            begins ? s->field[TLED_DISPLACEMENT] : s->spare,
+            s->field[TLED_VELOCITY],
+            b->rows - row,
+            b->rows,
+            b->rows + row,
+            {1 / b->plan->rate, b->plan->damping, b->first > 0, begins, NULL}};
 }
 
-/* Starts what puts skin back that touches, after a pass that begins a step. It goes on beside the next pass, of which
- * only the tiles about skin wait for it. */
-static int touch_skin(cuda_state *s, const cuda_batch *b, err *e)
+/* After a pass that begins a step, skin that touches is put back, and nodes slide before; after others these alone. */
+static int slide_and_touch(cuda_state *s, const cuda_batch *b, err *e)
 {
+    cudaStream_t following = s->beside_due ? s->beside : s->stream;
+    const cuda_slide slide = sliding_of(s, b);
     if (!s->p->self_contact || b->first >= b->count)
-        return 0;
+        return s->p->sliding ? card_check(slide_start(slide, following), "the start of sliding", s->step, e) : 0;
     const cuda_touch k = {s->view,
                           s->skin,
+                          slide,
                           s->field[TLED_DISPLACEMENT],
                           s->field[TLED_VELOCITY],
                           b->rows,
                           b->rows + 3 * s->p->script->curves,
                           1 / b->plan->rate,
                           s->skin_launches++};
-    s->skin_due = s->skin_tiles > 0;
-    if (s->skin_due && (CUDA_TRY(cudaEventRecord(s->before_skin, s->stream)) ||
-                        CUDA_TRY(cudaStreamWaitEvent(s->beside, s->before_skin))))
-        return -1;
-    return card_check(skin_start(k, s->skin_blocks, s->skin_due ? s->beside : s->stream), "the start of skin contact",
-                      s->step, e);
+    return card_check(skin_start(k, s->skin_blocks, following), "the start of skin contact", s->step, e);
 }
 
 static int take_passes(cuda_state *s, const cuda_batch *b, err *e)
@@ -99,7 +105,7 @@ static int take_passes(cuda_state *s, const cuda_batch *b, err *e)
         if (s->method->passes(s, &one, e) ||
             press(s, tled_time(b->plan, one.first), 1 / b->plan->rate, b->plan->damping, one.first > 0,
                   one.first < b->count, e) ||
-            slide(s, &one, e) || touch_skin(s, &one, e))
+            go_beside(s, &one, e) || slide_and_touch(s, &one, e))
             return -1;
     }
     return 0;
@@ -300,7 +306,7 @@ static void cuda_destroy(cuda_state *s)
     if (!s)
         return;
     const cudaStream_t streams[] = {s->stream, s->sending, s->beside};
-    const cudaEvent_t events[] = {s->frame_free, s->frame_ready, s->before_skin, s->after_skin};
+    const cudaEvent_t events[] = {s->frame_free, s->frame_ready, s->before_beside, s->after_beside};
     for (cudaStream_t of : streams)
         if (of)
             cudaStreamSynchronize(of);

@@ -104,15 +104,15 @@ static int start_tiles(cuda_state *s, const cuda_pass *p, int64_t first, int64_t
     return card_check(started, "the start of a pass", s->step, e);
 }
 
-/* Tiles about skin follow what goes on beside. */
+/* Late tiles follow what goes on beside. */
 static int begin_pass(cuda_state *s, const cuda_pass *p, err *e)
 {
-    const int64_t last = s->skin_due ? s->skin_tiles : 0, first = s->tiles.count - last;
+    const int64_t last = s->beside_due ? s->late_tiles : 0, first = s->tiles.count - last;
     if (start_tiles(s, p, 0, first, s->stream, e) || (last && start_tiles(s, p, first, last, s->beside, e)))
         return -1;
-    s->skin_due = false;
-    return last && (CUDA_TRY(cudaEventRecord(s->after_skin, s->beside)) ||
-                    CUDA_TRY(cudaStreamWaitEvent(s->stream, s->after_skin)))
+    s->beside_due = false;
+    return last && (CUDA_TRY(cudaEventRecord(s->after_beside, s->beside)) ||
+                    CUDA_TRY(cudaStreamWaitEvent(s->stream, s->after_beside)))
                ? -1
                : 0;
 }

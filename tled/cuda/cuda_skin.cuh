@@ -37,6 +37,17 @@ static __device__ void leave_lists(const cuda_skin &s)
         s.all->longer[k] = 0;
 }
 
+/* Where skin is, is known once these stand where they are to. */
+static __device__ void slide_nodes(const cuda_touch &k, uint32_t *phase)
+{
+    if (!k.slide.of.count)
+        return;
+    for (int32_t i = (int32_t)(blockIdx.x * SKIN_THREADS + threadIdx.x); i < k.slide.of.count;
+         i += (int32_t)(gridDim.x * SKIN_THREADS))
+        slide_node(k.slide, i);
+    all_wait(k, phase, gridDim.x);
+}
+
 static __global__ void __launch_bounds__(SKIN_THREADS, SKIN_TOGETHER) skin_kernel(const __grid_constant__ cuda_touch k)
 {
     __shared__ skin_desk desk[SKIN_WARPS];
@@ -44,6 +55,7 @@ static __global__ void __launch_bounds__(SKIN_THREADS, SKIN_TOGETHER) skin_kerne
     const int odd = k.launch & 1;
     const double most = CONTACT_LISTED * s.c.shortest;
     uint32_t phase = 0;
+    slide_nodes(k, &phase);
     gather(k, odd);
     all_wait(k, &phase, gridDim.x);
     const double drift = s.all->drift[odd] + sqrt(of_bits(s.all->most[odd]));

@@ -8,6 +8,7 @@
 
 #include "solve/card_layout.cuh"
 #include "tled/cuda/cuda_ptx.cuh"
+#include "tled/cuda/cuda_sliding.cuh"
 #include "tled/cuda/cuda_view.cuh"
 #include "tled/cuda/cuda_warp.cuh"
 
@@ -25,7 +26,7 @@ enum {
     SKIN_TOUCHES = 2,                      /* contacts that are worth a block */
     SKIN_BLOCK_NODES = 96,                 /* the least that a block is worth its waiting for */
     SKIN_BLOCKS = SKIN_THREADS,            /* the most: each is waited for by a thread */
-    SKIN_PHASES = 16 + 2 * CONTACT_PASSES, /* no fewer than a launch has */
+    SKIN_PHASES = 17 + 2 * CONTACT_PASSES, /* no fewer than a launch has */
     SKIN_CHANGES = 3,
     SKIN_SOLIDS = 32,               /* bones that skin may not enter */
     SKIN_LISTED = 128,              /* candidates that a warp sorts */
@@ -89,6 +90,7 @@ typedef struct cuda_skin {
 typedef struct cuda_touch {
     cuda_view<real> view;
     cuda_skin skin;
+    cuda_slide slide;         /* of nodes whose steps are to be taken before */
     real *to, *velocity;      /* to: the next displacements */
     const double *now, *next; /* the curves' values, at the step's two ends */
     double dt;

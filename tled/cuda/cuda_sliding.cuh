@@ -1,6 +1,7 @@
 /* Nodes that slide on bone, on a card: a pass leaves these nodes alone, and their elements' pulls where their next
  * displacements go; the kernel here then takes their steps, by sliding_node.h. A look at the state leaves them out of
- * what it asks of free nodes; a kernel here adds them. Included by cuda_state.cuh alone.
+ * what it asks of free nodes; a kernel here adds them. Included by cuda_state.cuh, and
+ * by cuda_skin_room.cuh, as the kernel of skin takes these steps first.
  */
 #ifndef SINEW_CUDA_SLIDING_CUH
 #define SINEW_CUDA_SLIDING_CUH
@@ -50,11 +51,8 @@ static __device__ void slider_acceleration(const cuda_view<real> &v, const cuda_
     }
 }
 
-static __global__ void __launch_bounds__(SLIDE_THREADS) slide_kernel(const __grid_constant__ cuda_slide c)
+static __device__ void slide_node(const cuda_slide &c, int32_t i)
 {
-    const int32_t i = (int32_t)(blockIdx.x * SLIDE_THREADS + threadIdx.x);
-    if (i >= c.of.count)
-        return;
     const cuda_slider &s = c.of.slider[i];
     const sliding_field *field = &c.of.ground.field[s.node.of];
     real at[3], speed[3], pull[3];
@@ -78,6 +76,13 @@ static __global__ void __launch_bounds__(SLIDE_THREADS) slide_kernel(const __gri
         if (step.begins)
             c.to[to] = (real)u[a];
     }
+}
+
+static __global__ void __launch_bounds__(SLIDE_THREADS) slide_kernel(const __grid_constant__ cuda_slide c)
+{
+    const int32_t i = (int32_t)(blockIdx.x * SLIDE_THREADS + threadIdx.x);
+    if (i < c.of.count)
+        slide_node(c, i);
 }
 
 /* What monitor() asks of them. */

@@ -102,11 +102,11 @@ struct tled_state {
     cuda_skin skin;           /* that touches itself; in memory of its own: */
     char *skin_memory;        /* or NULL: none does */
     int64_t skin_bytes, skin_blocks;
-    int64_t skin_tiles; /* the last ones, which have its nodes; 0: all wait for it */
     uint32_t skin_launches;
-    bool skin_due; /* it goes on beside, and the next pass of its tiles comes after it: */
+    int64_t late_tiles; /* the last ones, which have nodes about skin or that slide; 0: all wait for these */
+    bool beside_due;    /* these go on beside, and the next pass of the late tiles comes after them: */
     cudaStream_t beside;
-    cudaEvent_t before_skin, after_skin;
+    cudaEvent_t before_beside, after_beside;
     int64_t numbers;      /* of each of those that steps move: 3 x stride, or, where it marches, 4 x stride */
     uint64_t *message;    /* between tiles that are resident */
     uint32_t messages;    /* passes that they have sent them for */
@@ -284,8 +284,8 @@ static int make_events(cuda_state *s, err *e)
     if (CUDA_TRY(cudaStreamCreateWithFlags(&s->stream, cudaStreamNonBlocking)) ||
         CUDA_TRY(cudaStreamCreateWithFlags(&s->sending, cudaStreamNonBlocking)) ||
         CUDA_TRY(cudaStreamCreateWithPriority(&s->beside, cudaStreamNonBlocking, FIRST_OF_ALL)) ||
-        CUDA_TRY(cudaEventCreateWithFlags(&s->before_skin, cudaEventDisableTiming)) ||
-        CUDA_TRY(cudaEventCreateWithFlags(&s->after_skin, cudaEventDisableTiming)) ||
+        CUDA_TRY(cudaEventCreateWithFlags(&s->before_beside, cudaEventDisableTiming)) ||
+        CUDA_TRY(cudaEventCreateWithFlags(&s->after_beside, cudaEventDisableTiming)) ||
         CUDA_TRY(cudaEventCreateWithFlags(&s->frame_free, cudaEventDisableTiming)) ||
         CUDA_TRY(cudaEventCreateWithFlags(&s->frame_ready, cudaEventDisableTiming)) ||
         CUDA_TRY(cudaMallocHost((void **)&s->sums_host, sizeof *s->sums_host)) ||
@@ -511,14 +511,28 @@ static int put_skin(cuda_state *s, err *e)
     return s->skin_bytes < 0 ? -1 : 0;
 }
 
-/* Puts tiles that have a node about skin behind all others, which need not wait for it. */
+/* Marks the model's nodes that slide, or that skin moves. */
+static void mark_late(const tled_problem *p, uint8_t *is)
+{
+    const self_contact *skin = p->self_contact;
+    const sliding *slides = p->sliding;
+    for (int64_t i = 0; skin && i < skin->nodes; i++)
+        is[skin->node[i]] = 1;
+    for (int64_t i = 0; slides && i < slides->count; i++)
+        is[slides->node[i]] = 1;
+}
+
+/* Puts tiles that have such nodes behind all others, which need not wait for them. */
 static int part_tiles(cuda_state *s, err *e)
 {
-    const self_contact *c = s->p->self_contact;
-    if (!c || !s->method->parts)
+    if (!s->method->parts)
         return 0;
-    const int64_t last = tiles_part(&s->tiles, c->node, c->nodes, e);
-    s->skin_tiles = last < s->tiles.count ? last : 0;
+    uint8_t *late = (uint8_t *)mem_array(s->p->nodes, sizeof *late, "the solver", e);
+    if (late)
+        mark_late(s->p, late);
+    const int64_t last = late ? tiles_part(&s->tiles, late, e) : -1;
+    free(late);
+    s->late_tiles = last < s->tiles.count ? last : 0;
     return last < 0 ? -1 : 0;
 }
 

@@ -1,5 +1,6 @@
 #include "tled/run/account.h"
 
+#include "base/clock.h"
 #include "base/mem.h"
 #include "tled/contact/sliding.h"
 #include "tled/problem/collider.h"
@@ -365,7 +366,7 @@ static void close_sums(account *a, double damping, double mass)
 }
 
 const account_sums *account_read(account *a, const tled_executor *b, tled_state *state, double time, double damping,
-                                 err *e)
+                                 double *there, err *e)
 {
     const tled_problem *p = a->p;
     const moment swap = a->before;
@@ -378,6 +379,7 @@ const account_sums *account_read(account *a, const tled_executor *b, tled_state 
     for (int i = TLED_CONTRACTILE; i < p->fields.count; i++)
         if (b->get(state, i, a->contractile[i - TLED_CONTRACTILE], e))
             return NULL;
+    *there = clock_now();
     begin_sums(a, time);
     tled_curves(p, time, a->now.curves);
     if (p->collider)
@@ -462,7 +464,8 @@ account_past account_past_of(const account *a)
 
 int account_resume(account *a, const tled_executor *b, tled_state *state, double time, const account_past *past, err *e)
 {
-    if (!account_read(a, b, state, time, 0, e))
+    double there;
+    if (!account_read(a, b, state, time, 0, &there, e))
         return -1;
     set_past(&a->now, past);
     account_save(a);

@@ -38,9 +38,10 @@ account *account_create(const tled_problem *p, pool *threads, err *e);
 void account_destroy(account *a);
 
 /* Reads the state, which stands at `time`; damping (1/s): of the steps since the reading before. The sums are borrowed
- * until the next reading. NULL with e filled where the executor fails. */
+ * until the next reading. *there gets when the state had come, by the clock: steps may be under way before. NULL with e
+ * filled where the executor fails. */
 const account_sums *account_read(account *a, const tled_executor *b, tled_state *state, double time, double damping,
-                                 err *e);
+                                 double *there, err *e);
 
 /* Of the last reading, nodes x 3, m, and the curves' values; borrowed until the next. */
 const double *account_displacement(const account *a);

@@ -323,7 +323,7 @@ static void put_key(const run_log *l, int key, double time)
 
 static int put_row(run_log *l, const log_row *row, const account_sums *s, err *e)
 {
-    const double took = clock_now() - l->began;
+    const double took = clock_now() - l->began - l->own;
     const double rate = took > 0 && row->taken > l->steps ? (double)(row->taken - l->steps) / took : NAN;
     const double values[] = {row->dt,
                              row->stable,
@@ -359,15 +359,18 @@ static int put_row(run_log *l, const log_row *row, const account_sums *s, err *e
     put_share(l->rows, quality_hourglass(s->tissue.hourglass, s->tissue.strain, s->tissue.scale));
     out_text(l->rows, "\n");
     l->steps = row->taken;
+    l->own = 0;
     l->began = clock_now();
     return 0;
 }
 
 int log_read(run_log *l, const tled_executor *b, tled_state *state, const log_row *row, bool shown, err *e)
 {
-    const account_sums *s = account_read(l->account, b, state, row->time, row->damping, e);
+    double there;
+    const account_sums *s = account_read(l->account, b, state, row->time, row->damping, &there, e);
     if (!s)
         return -1;
+    l->own += clock_now() - there;
     if (shown && put_row(l, row, s, e))
         return -1;
     l->last = *row;
@@ -378,8 +381,11 @@ int log_read(run_log *l, const tled_executor *b, tled_state *state, const log_ro
 
 int log_save(run_log *l, err *e)
 {
+    const double from = clock_now();
     account_save(l->account);
-    return empty_rows(l, true, e);
+    const int result = empty_rows(l, true, e);
+    l->own += clock_now() - from;
+    return result;
 }
 
 int log_restore(run_log *l, err *e)

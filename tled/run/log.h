@@ -39,6 +39,7 @@ typedef struct run_log {
     pool *threads;          /* the run's */
     int64_t steps;          /* of the last row, each part of a cut step for itself */
     double began;           /* when the last row was, by the clock */
+    double own;             /* s: what the log itself took since then */
     bool is_pending;
     log_row last;                /* of the last reading */
     const account_sums *unshown; /* its sums, borrowed from the account; NULL: it has its row */

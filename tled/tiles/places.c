@@ -72,3 +72,17 @@ int places_shared(int64_t nodes, const int32_t *group, const int32_t *at, int32_
     free(seat);
     return 0;
 }
+
+void places_sort(int32_t *item, uint32_t *key, int32_t count)
+{
+    for (int32_t i = 1; i < count; i++) {
+        int32_t one = item[i], at = i;
+        uint32_t its = key[i];
+        for (; at && key[at - 1] > its; at--) {
+            item[at] = item[at - 1];
+            key[at] = key[at - 1];
+        }
+        item[at] = one;
+        key[at] = its;
+    }
+}

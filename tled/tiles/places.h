@@ -15,4 +15,8 @@ int places_find(const tled_problem *p, int32_t *part, int32_t *at, err *e);
  * part, or one that tells parts apart). Takes memory for a table beside. -1 with e filled. */
 int places_shared(int64_t nodes, const int32_t *group, const int32_t *at, int32_t *first, err *e);
 
+/* Sorts items, and their keys with them, by key, ascending; those of one key stay in their order. For few: no more than
+ * a brick has places. */
+void places_sort(int32_t *item, uint32_t *key, int32_t count);
+
 #endif

@@ -5,48 +5,57 @@
 #include <stdlib.h>
 #include <string.h>
 
-static bool has_node(const tiles *t, const tile *of, const uint8_t *is)
+/* A tile, where it stood, and what it is ordered by. */
+typedef struct place {
+    tile of;
+    int64_t at;
+    bool is_late;
+} place;
+
+static bool has_late(const tiles *t, const tile *of, const uint8_t *late)
 {
     for (int32_t k = of->node; k < of->node + of->nodes; k++)
-        if (is[t->node[k]])
+        if (late[t->node[k]])
             return true;
     for (int32_t k = of->halo; k < of->halo + of->halos; k++)
-        if (is[t->node[t->halo_node[k]]])
+        if (late[t->node[t->halo_node[k]]])
             return true;
     return false;
 }
 
-/* Takes those that have, or have not, such a node, with their lists, to `to` and on. Returns how many. */
-static int64_t take_tiles(const tiles *t, const uint8_t *is, bool that_have, tile *to, int32_t *list)
+static int by_turn(const void *a, const void *b)
+{
+    const place *one = a, *other = b;
+    if (one->is_late != other->is_late)
+        return one->is_late ? 1 : -1;
+    if (one->of.cells != other->of.cells)
+        return one->of.cells > other->of.cells ? -1 : 1;
+    return (one->at > other->at) - (one->at < other->at);
+}
+
+static int64_t order(tiles *t, const uint8_t *late, place *turn, int32_t *list)
 {
     int64_t count = 0;
     for (int64_t i = 0; i < t->count; i++) {
-        if (has_node(t, &t->tile[i], is) != that_have)
-            continue;
-        if (t->list)
-            list[count] = t->list[i];
-        to[count++] = t->tile[i];
+        turn[i] = (place){t->tile[i], i, has_late(t, &t->tile[i], late)};
+        count += turn[i].is_late;
     }
+    qsort(turn, (size_t)t->count, sizeof *turn, by_turn);
+    for (int64_t i = 0; i < t->count; i++) {
+        t->tile[i] = turn[i].of;
+        list[i] = t->list ? t->list[turn[i].at] : -1;
+    }
+    if (t->list)
+        memcpy(t->list, list, (size_t)t->count * sizeof *list);
     return count;
 }
 
-int64_t tiles_part(tiles *t, const int32_t *node, int64_t count, err *e)
+int64_t tiles_part(tiles *t, const uint8_t *late, err *e)
 {
-    int64_t last = -1;
-    uint8_t *is = mem_array(t->nodes, sizeof *is, "the solver", e);
-    tile *of = is ? mem_array(t->count, sizeof *of, "the solver", e) : NULL;
-    int32_t *list = of ? mem_array(t->count, sizeof *list, "the solver", e) : NULL;
-    if (list) {
-        for (int64_t i = 0; i < count; i++)
-            is[node[i]] = 1;
-        const int64_t others = take_tiles(t, is, false, of, list);
-        last = take_tiles(t, is, true, of + others, list + others);
-        memcpy(t->tile, of, (size_t)t->count * sizeof *of);
-        if (t->list)
-            memcpy(t->list, list, (size_t)t->count * sizeof *list);
-    }
+    place *turn = mem_array(t->count, sizeof *turn, "the solver", e);
+    int32_t *list = turn ? mem_array(t->count, sizeof *list, "the solver", e) : NULL;
+    const int64_t count = list ? order(t, late, turn, list) : -1;
     free(list);
-    free(of);
-    free(is);
-    return last;
+    free(turn);
+    return count;
 }

@@ -146,21 +146,6 @@ static uint32_t info_of(const cutter *c, int32_t n, int32_t place)
     return info | script_info(p, n);
 }
 
-/* By place; a stable sort, of at most as many as a brick has places. */
-static void sort_by_place(int32_t *item, uint32_t *key, int32_t count)
-{
-    for (int32_t i = 1; i < count; i++) {
-        int32_t one = item[i], at = i;
-        uint32_t its = key[i];
-        for (; at && key[at - 1] > its; at--) {
-            item[at] = item[at - 1];
-            key[at] = key[at - 1];
-        }
-        item[at] = one;
-        key[at] = its;
-    }
-}
-
 /* The nodes of each tile, as they come. */
 static int list_nodes(cutter *c)
 {
@@ -196,7 +181,7 @@ static bool sort_nodes(cutter *c, int64_t i)
         return false;
     for (int32_t k = 0; k < own->nodes; k++)
         key[k] = (uint32_t)place_in(c, i, list[k]);
-    sort_by_place(list, key, own->nodes);
+    places_sort(list, key, own->nodes);
     for (int32_t k = 0; k < own->nodes; k++) {
         const int32_t *corner = p->corner + 8 * (int64_t)list[k];
         uint32_t corners = 0;
@@ -463,6 +448,15 @@ static int list_lists(cutter *c)
     return 0;
 }
 
+/* Cells that a kernel computes alike stand together, as threads of a warp that take different ways take them one after
+ * the other: cells that are mixed stand first, and of both kinds those that are cut; then by place. */
+static uint32_t cell_key(const cutter *c, int64_t which, int64_t element)
+{
+    const tled_problem *p = c->p;
+    const uint32_t is_plain = !p->mixed || p->mixed[element] < 0, is_whole = cut_moments_row(&p->cut, element) < 0;
+    return (is_plain << 1 | is_whole) << TILE_CORNERS | (uint32_t)place_in(c, which, p->element_node[8 * element]);
+}
+
 static void sort_cells(cutter *c, int64_t i)
 {
     tiles *t = c->t;
@@ -472,8 +466,8 @@ static void sort_cells(cutter *c, int64_t i)
     for (int part = 0; part < 2; part++) {
         int32_t first = part ? to->fibred : 0, count = part ? to->cells - to->fibred : to->fibred;
         for (int32_t k = 0; k < count; k++)
-            key[k] = (uint32_t)place_in(c, i, c->p->element_node[8 * (int64_t)list[first + k]]);
-        sort_by_place(list + first, key, count);
+            key[k] = cell_key(c, i, list[first + k]);
+        places_sort(list + first, key, count);
     }
     for (int32_t k = 0; k < 3 * to->fibred; k++) {
         t->fibre[3 * (int64_t)to->direction + k] = c->p->fibre[3 * (int64_t)list[k / 3] + k % 3];

@@ -74,7 +74,7 @@ typedef struct tiles {
     int32_t *order;      /* nodes, in the tiles' order: where each stands; NULL: there */
     int32_t *halo_node;  /* halos: where it stands */
     uint16_t *halo_place;  /* halos */
-    uint32_t *cell;        /* cells: TILE_*, those with fibres first, then by place */
+    uint32_t *cell;        /* cells: TILE_*: those with fibres first; of both, those alike together; then by place */
     int32_t *cell_element; /* cells: which of the model's elements it is */
     float *fibre;          /* directions x 3 */
     float *share;          /* cells: the problem's fraction; NULL where that is */
