@@ -151,5 +151,14 @@ else
     skip 4 "a scan takes seconds: SINEW_LONG is not set"
 fi
 
+# Landmarks: the nearest vertex of the skin, though one of the skull is nearer, and how far it goes in each file.
+printf 'chin 0.9 0 0 # a comment\ntip 0 2 0\n' >"$T/landmarks"
+printf 'v 1 0 0\nv 0 2 0\nv 0 0 1\nv .9 0 0\ng skin_of_face\nf 1 2 3\ng skull\nf 4 2 3\n' >"$T/rest.obj"
+printf 'v 4 4 12\nv 0 2 0\nv 0 0 1\nv 9 9 9\n' >"$T/laugh.obj"
+printf 'v 1 0 0\nv 0 0 0\nv 0 0 1\nv 9 9 9\n' >"$T/cry.obj"
+is "$(awk -f samples/landmarks.awk "$T/landmarks" "$T/rest.obj" "$T/laugh.obj" "$T/cry.obj" | tr '\t\n' ' /')" \
+    "expression chin.x chin.y chin.z chin tip.x tip.y tip.z tip/laugh 3.00 4.00 12.00 13.00 0.00 0.00 0.00 0.00/cry 0.00 0.00 0.00 0.00 0.00 -2.00 0.00 2.00/" \
+    "landmarks of two expressions"
+
 fails 2 "a folder without OBJ files" "no OBJ file in .*expected IN=folder" make -C samples IN="$T/none"
 done_testing
