@@ -3,6 +3,7 @@
 #include "solve/card_layout.cuh"
 
 #include "msds/cuda/cuda_exact.cuh"
+#include "msds/cuda/cuda_planes.cuh"
 
 #include <math.h>
 #include <stdio.h>
@@ -28,9 +29,7 @@ struct msds_state {
     tissue t;
     tissue_exact x;
     char *memory, *fem, *exact; /* of the card */
-    double *planes;             /* of a convex probe: on the card, as those here */
-    double *planes_here;
-    int32_t planes_count;
+    card_planes planes;
     int64_t bytes, fem_bytes, exact_bytes;
     void *staging;           /* pinned: nodes x float4, or x 3 doubles */
     tissue_outcome *outcome; /* pinned */
@@ -185,8 +184,7 @@ static void cuda_destroy(cuda_state *s)
     card_give(s->memory);
     card_give(s->fem);
     card_give(s->exact);
-    card_give(s->planes);
-    free(s->planes_here);
+    card_planes_free(&s->planes);
     if (s->stream)
         cudaStreamDestroy(s->stream);
     sell_free(&s->order);
@@ -300,33 +298,10 @@ cudaError_t tissue_start(tissue_kernel which, const void *(*of)(const tissue *t,
                : cudaLaunchCooperativeKernel(kernel, dim3((unsigned)blocks), dim3(GRID_THREADS), with, 0, stream);
 }
 
-/* A convex probe's planes go to the card where they are not those of the frame before: by the stream of
- * the frames, which waits for no other. */
-static int put_planes(cuda_state *s, const probe *shape, err *e)
-{
-    const size_t bytes = 4 * (size_t)shape->planes * sizeof *s->planes;
-    if (shape->kind != PROBE_CONVEX ||
-        (s->planes_count == shape->planes && !memcmp(s->planes_here, shape->plane, bytes)))
-        return 0;
-    if (s->planes && CUDA_TRY(cudaStreamSynchronize(s->stream)))
-        return -1;
-    card_give(s->planes);
-    free(s->planes_here);
-    s->planes_count = 0;
-    s->planes_here = (double *)mem_array(shape->planes, 4 * sizeof *s->planes_here, "the probe", e);
-    s->planes = s->planes_here ? (double *)card_take((int64_t)bytes, "the probe", e) : NULL;
-    if (!s->planes || CUDA_TRY(cudaMemcpyAsync(s->planes, shape->plane, bytes, cudaMemcpyHostToDevice, s->stream)))
-        return -1;
-    memcpy(s->planes_here, shape->plane, bytes);
-    s->planes_count = shape->planes;
-    return 0;
-}
-
 static tissue_frame frame_of(const cuda_state *s, const msds_plan *plan, int64_t count)
 {
     tissue_frame f = {};
-    f.probe = plan->probe;
-    f.probe.shape.plane = s->planes;
+    f.probe = card_planes_placed(&s->planes, &plan->probe);
     for (int a = 0; a < 3; a++)
         f.centre[a] = (float)plan->probe.centre[a];
     f.reach = (float)(plan->probe.reach * (1 + 1e-6));
@@ -370,7 +345,7 @@ static int cuda_step(cuda_state *s, const msds_plan *p, int64_t count, err *e)
 {
     if (p->warp && p->method != MSDS_SPRINGS)
         return err_set(e, NULL, 0, "--warp is not done on a card; expected -d cpu");
-    if (p->touched && put_planes(s, &p->probe.shape, e))
+    if (p->touched && card_planes_put(&s->planes, &p->probe.shape, s->stream, s->step, e))
         return -1;
     const tissue_frame f = frame_of(s, p, count);
     int result;
@@ -484,6 +459,7 @@ static int64_t cuda_bytes(const cuda_state *s)
 
 const msds_executor msds_cuda = {
     .is = {.device = "cuda", .features = EXECUTOR_CONTACT, .forms = 0, .unusable = card_unusable},
+    .skin = &msds_cuda_skin,
     .create = cuda_create,
     .destroy = cuda_destroy,
     .step = cuda_step,

@@ -8,4 +8,7 @@
 
 extern const msds_executor msds_cuda;
 
+/* Its skins, in double. */
+extern const skin_device msds_cuda_skin;
+
 #endif

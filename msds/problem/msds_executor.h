@@ -9,6 +9,7 @@
 
 #include "base/pool.h"
 #include "msds/problem/problem.h"
+#include "msds/problem/skin_step.h"
 #include "solve/executor.h"
 
 /* What get() gives, nodes x 3 doubles each: m, m/s. */
@@ -16,8 +17,27 @@ enum { MSDS_DISPLACEMENT, MSDS_VELOCITY };
 
 typedef struct msds_state msds_state; /* each executor's own */
 
+typedef struct skin_state skin_state; /* each device's own */
+
+/* How a device steps a skin, beside the tissue. A caller owns the state that create gives, until destroy. All but
+ * create: -1 with e filled. */
+typedef struct skin_device {
+    /* Takes over all of a skin as it stands. NULL with e filled. */
+    skin_state *(*create)(const skin_view *s, err *e);
+    void (*destroy)(skin_state *state);
+    /* Takes over its options, inertia, anchor and held. */
+    int (*change)(skin_state *state, const skin_view *s, err *e);
+    /* Back to rest. */
+    int (*reset)(skin_state *state, err *e);
+    /* Takes `count` steps with the probe where it is (NULL: none); may return before they are done. */
+    int (*step)(skin_state *state, const probe_placed *at, int64_t count, err *e);
+    /* Waits, and copies the displacements out: vertices x 3, m. */
+    int (*get)(skin_state *state, double *u, err *e);
+} skin_device;
+
 typedef struct msds_executor {
     executor is;
+    const skin_device *skin; /* NULL: the processor steps skins */
     /* Allocates all that the springs take; what another method needs is made when it is first asked for. NULL with
      * e filled. */
     msds_state *(*create)(const msds_problem *p, pool *threads, err *e);

@@ -181,6 +181,7 @@ static int make_skin(session *s, err *e)
         return 0;
     if (surface_of(&s->m, s->skin_name, &shape, e) || skin_make(&s->skin, &shape, &options, s->threads, e))
         return -1;
+    s->skin.device = s->device->skin;
     tool_say(s->t, "skin %s: %lld vertices, %lld springs", s->skin_name, (long long)s->skin.vertices,
              (long long)s->skin.edges);
     return 0;
@@ -270,7 +271,7 @@ int session_change(session *s, session_part part, err *e)
     if (of_problem && change_problem(s, part, e))
         return -1;
     if (s->skin.vertices && part != SESSION_PACE && part != SESSION_FORCES)
-        skin_change(&s->skin, &options);
+        return skin_change(&s->skin, &options, e);
     return 0;
 }
 

@@ -8,9 +8,8 @@
 
 enum { CHUNK = 512, TURNS = 50 };
 
-/* Of what is stable; over what is critical. And a spring that has collapsed counts
- * as this share of its length, at least. */
-static const double safe = .9, damped = 1.1, least = 1e-5;
+/* Of what is stable; over what is critical. */
+static const double safe = .9, damped = 1.1;
 
 static int cut(skin *s, const surface *shape, err *e)
 {
@@ -118,6 +117,13 @@ static void settle(skin *s, int64_t v, double k)
     s->oscillates = fmin(s->oscillates, m > 0 ? gamma / (2 * sqrt(m * a)) : INFINITY);
 }
 
+static void settle_all(skin *s)
+{
+    s->oscillates = INFINITY;
+    for (int64_t v = 0; v < s->vertices; v++)
+        settle(s, v, s->options.stiffness * (double)(s->start[v + 1] - s->start[v]));
+}
+
 int skin_make(skin *s, const surface *shape, const skin_options *o, pool *threads, err *e)
 {
     *s = (skin){
@@ -132,26 +138,14 @@ int skin_make(skin *s, const surface *shape, const skin_options *o, pool *thread
     for (size_t i = 0; i < 3; i++)
         if (!(*values[i] = mem_array(s->vertices, sizeof(double), "the skin", e)))
             return -1;
-    skin_change(s, o);
+    settle_all(s);
     return 0;
-}
-
-void skin_change(skin *s, const skin_options *o)
-{
-    s->options = *o;
-    s->oscillates = INFINITY;
-    for (int64_t v = 0; v < s->vertices; v++)
-        settle(s, v, o->stiffness * (double)(s->start[v + 1] - s->start[v]));
-}
-
-void skin_reset(skin *s)
-{
-    memset(s->u, 0, 3 * (size_t)s->vertices * sizeof *s->u);
-    memset(s->v, 0, 3 * (size_t)s->vertices * sizeof *s->v);
 }
 
 void skin_free(skin *s)
 {
+    if (s->on_device)
+        s->device->destroy(s->on_device);
     free(s->triangle);
     free(s->start);
     free(s->spring);
@@ -165,64 +159,36 @@ void skin_free(skin *s)
     *s = (skin){.vertices = 0};
 }
 
-static void pull(const skin *s, int64_t v, const skin_spring *spring, double force[3])
+/* ---- steps */
+
+static skin_view view_of(const skin *s)
 {
-    const double *x = s->position, *u = s->u, *w = s->v, k = s->options.stiffness;
-    const int64_t o = spring->other;
-    double d[3], length = 0, speed = 0;
-    for (int a = 0; a < 3; a++) {
-        d[a] = (x[3 * o + a] - x[3 * v + a]) + (u[3 * o + a] - u[3 * v + a]);
-        length += d[a] * d[a];
-        speed += d[a] * (w[3 * o + a] - w[3 * v + a]);
-    }
-    length = fmax(sqrt(length), least * spring->rest);
-    const double across = s->options.tension * k;
-    double by = (k * (length - spring->rest) + s->options.damping * k * speed / length) / length;
-    for (int a = 0; a < 3; a++)
-        force[a] +=
-            by * d[a] + across * ((u[3 * o + a] - u[3 * v + a]) + s->options.damping * (w[3 * o + a] - w[3 * v + a]));
+    return (skin_view){.vertices = s->vertices,
+                       .edges = s->edges,
+                       .options = s->options,
+                       .position = s->position,
+                       .start = s->start,
+                       .spring = s->spring,
+                       .inertia = s->inertia,
+                       .anchor = s->anchor,
+                       .held = s->held,
+                       .u = s->u,
+                       .v = s->v,
+                       .next_u = s->next_u,
+                       .next_v = s->next_v};
 }
 
-/* A vertex that the step would leave in the probe comes to its surface. */
-static void push(const skin *s, int64_t v)
-{
-    double *u = s->next_u + 3 * v, *speed = s->next_v + 3 * v, x[3], away = 0, along = 0;
-    for (int a = 0; a < 3; a++) {
-        x[a] = s->position[3 * v + a] + u[a];
-        away += (x[a] - s->probe->centre[a]) * (x[a] - s->probe->centre[a]);
-    }
-    if (away > s->probe->reach * s->probe->reach)
-        return;
-    probe_touch t = probe_at(s->probe, x);
-    if (!(t.depth > 0))
-        return;
-    for (int a = 0; a < 3; a++)
-        along += t.way[a] * speed[a];
-    for (int a = 0; a < 3; a++) {
-        u[a] += t.depth * t.way[a];
-        speed[a] -= fmin(0, along) * t.way[a];
-    }
-}
+typedef struct stepping {
+    skin_view view;
+    const probe_placed *probe;
+} stepping;
 
-/* PST equations 3 to 5. A vertex of no triangle stays. */
 static void step_some(void *context, int64_t chunk, int64_t from, int64_t to)
 {
-    const skin *s = context;
+    const stepping *s = context;
     (void)chunk;
-    for (int64_t v = from; v < to; v++) {
-        double force[3];
-        for (int a = 0; a < 3; a++)
-            force[a] = -s->anchor[v] * s->u[3 * v + a] - s->held[v] * s->v[3 * v + a];
-        for (int64_t i = s->start[v]; i < s->start[v + 1]; i++)
-            pull(s, v, &s->spring[i], force);
-        for (int a = 0; a < 3; a++) {
-            double speed = s->inertia[v] > 0 ? s->v[3 * v + a] + s->options.dt / s->inertia[v] * force[a] : 0;
-            s->next_v[3 * v + a] = speed;
-            s->next_u[3 * v + a] = s->u[3 * v + a] + s->options.dt * speed;
-        }
-        if (s->probe && s->inertia[v] > 0)
-            push(s, v);
-    }
+    for (int64_t v = from; v < to; v++)
+        skin_step_vertex(&s->view, s->probe, v);
 }
 
 static void swap(double **a, double **b)
@@ -232,15 +198,46 @@ static void swap(double **a, double **b)
     *b = spare;
 }
 
-void skin_step(skin *s, const probe_placed *at, int64_t count)
+/* The device has all that is here from its first step on. */
+static int step_on_device(skin *s, const probe_placed *at, int64_t count, err *e)
 {
-    s->probe = at;
+    const skin_view view = view_of(s);
+    if (!s->on_device)
+        s->on_device = s->device->create(&view, e);
+    return s->on_device ? s->device->step(s->on_device, at, count, e) : -1;
+}
+
+int skin_step(skin *s, const probe_placed *at, int64_t count, err *e)
+{
+    if (s->device)
+        return step_on_device(s, at, count, e);
     for (int64_t i = 0; i < count; i++) {
-        pool_run(s->threads, s->vertices, CHUNK, step_some, s);
+        stepping by = {view_of(s), at};
+        pool_run(s->threads, s->vertices, CHUNK, step_some, &by);
         swap(&s->u, &s->next_u);
         swap(&s->v, &s->next_v);
     }
-    s->probe = NULL;
+    return 0;
+}
+
+int skin_change(skin *s, const skin_options *o, err *e)
+{
+    s->options = *o;
+    settle_all(s);
+    const skin_view view = view_of(s);
+    return s->on_device ? s->device->change(s->on_device, &view, e) : 0;
+}
+
+int skin_reset(skin *s, err *e)
+{
+    memset(s->u, 0, 3 * (size_t)s->vertices * sizeof *s->u);
+    memset(s->v, 0, 3 * (size_t)s->vertices * sizeof *s->v);
+    return s->on_device ? s->device->reset(s->on_device, e) : 0;
+}
+
+int skin_fetch(skin *s, err *e)
+{
+    return s->on_device ? s->device->get(s->on_device, s->u, e) : 0;
 }
 
 void skin_normals(const skin *s, double *to)

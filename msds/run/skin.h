@@ -17,21 +17,8 @@
 #define SINEW_SKIN_H
 
 #include "base/pool.h"
-#include "probe/probe.h"
+#include "msds/problem/msds_executor.h"
 #include "surface/surface.h"
-
-typedef struct skin_options {
-    double stiffness; /* N/m: of an edge's spring */
-    double anchors;   /* an anchor's stiffness over the sum of its vertex's springs' */
-    double tension;   /* how stiff an edge's spring is across itself, as under tension, over its stiffness */
-    double damping;   /* s: of a spring over its stiffness */
-    double dt;        /* s */
-} skin_options;
-
-typedef struct skin_spring { /* as one end sees it */
-    int32_t other;
-    double rest; /* m */
-} skin_spring;
 
 typedef struct skin {
     surface shape; /* borrowed, as is position */
@@ -45,7 +32,8 @@ typedef struct skin {
     double *inertia, *anchor, *held; /* vertices: kg; N/m; N s/m: the anchor's damping */
     double *u, *v, *next_u, *next_v; /* vertices x 3: m, m/s */
     double oscillates;               /* the least share of critical damping that any anchor has: at least 1 */
-    const probe_placed *probe;
+    const skin_device *device;       /* that takes the steps; NULL, as it is made: the processor does */
+    skin_state *on_device;           /* owned, once it has taken one: u and v are there then */
 } skin;
 
 /* Makes s (zeroed) of the surface at rest. -1 with e filled, and s to be freed all the same: no memory, no
@@ -53,14 +41,18 @@ typedef struct skin {
 int skin_make(skin *s, const surface *shape, const skin_options *o, pool *threads, err *e);
 void skin_free(skin *s);
 
-/* Takes other options; the skin stays as it is. */
-void skin_change(skin *s, const skin_options *o);
+/* Takes other options; the skin stays as it is. -1 with e filled, as for all below: the device failed. */
+int skin_change(skin *s, const skin_options *o, err *e);
 
 /* Back to rest. */
-void skin_reset(skin *s);
+int skin_reset(skin *s, err *e);
 
-/* Steps on, with the probe where it is (NULL: none). The same bytes for any count of threads. */
-void skin_step(skin *s, const probe_placed *at, int64_t count);
+/* Steps on, with the probe where it is (NULL: none). The same bytes for any count of threads, and on a device, which
+ * may not be done when this returns. */
+int skin_step(skin *s, const probe_placed *at, int64_t count, err *e);
+
+/* Waits for the steps, and brings the displacements back: to be called before they are looked at. */
+int skin_fetch(skin *s, err *e);
 
 /* Unit normals of the vertices as they are now, the mean of their triangles' by area: vertices x 3; 0 where there
  * are none. */

@@ -55,8 +55,9 @@ static int64_t make_moves(session *s, msds_state *state, const press_moves *move
     int64_t count = 0;
     for (int i = 0; i < moves->count; i++) {
         plan->probe = probe_place(&s->probe, &moves->list[i].at);
-        if (with_skin && s->skin.vertices)
-            skin_step(&s->skin, plan->touched ? &plan->probe : NULL, moves->list[i].iterations);
+        if (with_skin && s->skin.vertices &&
+            skin_step(&s->skin, plan->touched ? &plan->probe : NULL, moves->list[i].iterations, e))
+            return -1;
         count = moves->list[i].iterations * (plan->method == MSDS_SPRINGS ? s->substeps : 1);
         if (i + 1 < moves->count && s->device->step(state, plan, count, e))
             return -1;
@@ -76,6 +77,8 @@ static int solve_pose(session *s, const frame_input *from, const press_moves *mo
     msds_reading reading = {0};
     const int64_t count = make_moves(s, s->state, moves, plan, true, e);
     if (count < 0 || s->device->step(s->state, plan, count, e) || s->device->monitor(s->state, &reading, e))
+        return -1;
+    if (skin_fetch(&s->skin, e))
         return -1;
     const double dent = s->skin.vertices ? skin_largest(&s->skin) : 0;
     s->diverged = !reading.finite || !isfinite(dent);
@@ -138,9 +141,9 @@ int solve_frame_rest(session *s, const frame_input *from, err *e)
     begin(s, from);
     press_wait(&s->press, &f, &s->moves);
     press_reset(&s->press);
-    if (s->skin.vertices)
-        skin_reset(&s->skin);
     s->reading = (msds_reading){.residual = NAN, .finite = true};
+    if (s->skin.vertices && skin_reset(&s->skin, e))
+        return -1;
     return s->device->reset(s->state, e);
 }
 

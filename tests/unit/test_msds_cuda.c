@@ -1,13 +1,15 @@
 /* msds-run's CUDA executor against the CPU's: springs and conjugate gradients give the same numbers to the bit, exact
  * frames come within 1e-5 of the largest displacement; on lattices, on a mesh without any order, through changes of
- * method, with contact of both kinds; and a hundred repeats give the same bytes. Without a card all is skipped.
+ * method, with contact of both kinds; and a hundred repeats give the same bytes; so do skins. Without a card all is
+ * skipped.
  * `test_msds_cuda small` is short enough for compute-sanitizer.
  */
 // needs: msds/mesh/mesh_tets.c msds/problem/problem.c msds/problem/springs.c msds/problem/sell.c msds/cpu/lanes.c
 // needs: msds/cpu/lanes_loops.c msds/cpu/contacts.c
 // needs: msds/problem/stiffness.c msds/cpu/dissect.c msds/cpu/factor.c msds/cpu/exact.c msds/cpu/mixing.c msds/cpu/cg.c
-// needs: msds/cpu/exact_making.c msds/cpu/msds_cpu.c msds/run/msds_executors.c msds/problem/largest.c
+// needs: msds/cpu/exact_making.c msds/cpu/msds_cpu.c msds/run/msds_executors.c msds/problem/largest.c msds/run/skin.c
 #include "msds_block.h"
+#include "skin_sheet.h"
 
 #include "base/mem.h"
 #include "msds/cpu/msds_cpu.h"
@@ -294,6 +296,49 @@ static void test_method(msds_method method, const msds_executor *cuda, const cha
     test_repeats(&odd, method, cuda, name);
 }
 
+/* Presses, goes on with other options, and from rest; the skin's displacements, vertices x 3, go to `to`. */
+static void dent(const model *m, const probe *p, const skin_device *device, double *to)
+{
+    err e = {0};
+    skin s = {.vertices = 0};
+    skin_options o = sheet_options();
+    sheet_make(&s, m, &o, 2);
+    s.device = device;
+    const size_t bytes = 3 * (size_t)s.vertices * sizeof *to;
+    for (int part = 0; part < 3; part++, to += 3 * s.vertices) {
+        for (int t = 0; t < 20; t++) {
+            const pose at = {{.1 + .001 * t, .1, -.001 * t}, {1, 0, 0, 0}};
+            const probe_placed placed = probe_place(p, &at);
+            sheet_step(&s, t < 18 ? &placed : NULL, 7);
+        }
+        memcpy(to, s.u, bytes);
+        o.stiffness *= 2, o.damping /= 2;
+        sheet_must(!(part ? skin_reset(&s, &e) : skin_change(&s, &o, &e)), &e);
+    }
+    sheet_done(&s);
+}
+
+static void test_skins(const msds_executor *cuda)
+{
+    enum { NUMBERS = 9 * SHEET_SIDE * SHEET_SIDE };
+    const probe shapes[] = {probe_sphere(.03), probe_linear(.03, .01, .0025), probe_curved(.03, 1.2, .014, .003),
+                            prism()};
+    static const char *const names[] = {"a ball", "a linear array", "a curved array", "a convex probe"};
+    static double here[NUMBERS], there[NUMBERS];
+    model m = {0};
+    sheet_add(&m, .005);
+    for (int i = 0; i < 4; i++) {
+        double most = 0;
+        dent(&m, &shapes[i], NULL, here);
+        dent(&m, &shapes[i], cuda->skin, there);
+        for (int k = 0; k < NUMBERS; k++)
+            most = fmax(most, fabs(here[k]));
+        ok(most > .005 && !memcmp(here, there, sizeof here), "a skin under %s, %.3g mm deep: the processor's bytes",
+           names[i], 1e3 * most);
+    }
+    model_free(&m);
+}
+
 int main(int argc, char **argv)
 {
     shortened = argc > 1 && !strcmp(argv[1], "small");
@@ -307,6 +352,7 @@ int main(int argc, char **argv)
     test_method(MSDS_FEM, cuda, "20 cg");
     test_method(MSDS_EXACT, cuda, "exact");
     test_changes(&odd, cuda);
+    test_skins(cuda);
     test_refused(cuda);
     return done_testing();
 }

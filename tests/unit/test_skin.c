@@ -1,63 +1,9 @@
 /* The skin: a sheet that a ball dents and that comes back to its place without oscillating; a uniform push against a
  * solution in closed form; normals; the same bytes for any count of threads; what is no skin. */
 // needs: msds/run/skin.c
+#include "skin_sheet.h"
+
 #include "tap.h"
-
-#include "base/mem.h"
-#include "model/model.h"
-#include "msds/run/skin.h"
-
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
-enum { SIDE = 41 };
-
-static void must(bool good, const err *e)
-{
-    if (good)
-        return;
-    printf("Bail out! %s\n", e->text);
-    exit(1);
-}
-
-/* A square sheet of 20 cm with a swell in it, as OBJ text of a model's surface. */
-static void sheet(model *m, double swell)
-{
-    static char text[SIDE * SIDE * 120];
-    err e = {0};
-    obj o = {0};
-    int n = 0;
-    for (int j = 0; j < SIDE; j++)
-        for (int i = 0; i < SIDE; i++) {
-            double x = .005 * i, y = .005 * j;
-            n += snprintf(text + n, sizeof text - (size_t)n, "v %.17g %.17g %.17g\n", x, y,
-                          swell * sin(20 * x) * sin(15 * y));
-        }
-    for (int j = 0; j + 1 < SIDE; j++)
-        for (int i = 0; i + 1 < SIDE; i++)
-            n += snprintf(text + n, sizeof text - (size_t)n, "f %d %d %d\nf %d %d %d\n", j * SIDE + i + 1,
-                          j * SIDE + i + 2, (j + 1) * SIDE + i + 2, j * SIDE + i + 1, (j + 1) * SIDE + i + 2,
-                          (j + 1) * SIDE + i + 1);
-    in *source = in_memory(text, (size_t)n, "sheet.obj", &e);
-    must(source && !obj_read(&o, source, &e) && !surface_add(m, "sheet", &o, 1, &e), &e);
-    in_close(source);
-    obj_free(&o);
-}
-
-static skin_options options(void)
-{
-    skin_options o = {.stiffness = 100, .anchors = .1, .tension = .5, .damping = .1, .dt = .01};
-    return o;
-}
-
-static void make(skin *s, const model *m, const skin_options *o, int threads)
-{
-    err e = {0};
-    surface shape;
-    pool *workers = pool_create(threads, &e);
-    must(workers && !surface_of(m, "sheet", &shape, &e) && !skin_make(s, &shape, o, workers, &e), &e);
-}
 
 /* How many vertices touch the probe, to a thousandth of its size. */
 static int64_t touched(const skin *s, const probe_placed *at)
@@ -72,13 +18,6 @@ static int64_t touched(const skin *s, const probe_placed *at)
     return count;
 }
 
-static void done(skin *s)
-{
-    pool *workers = s->threads;
-    skin_free(s);
-    pool_destroy(workers);
-}
-
 static probe_placed press_at(const probe *p, double x, double y, double z)
 {
     const pose at = {{x, y, z}, {1, 0, 0, 0}};
@@ -91,16 +30,17 @@ static void test_recovers(const probe *p, double swell, double anchors, const ch
 {
     model m = {0};
     skin s = {.vertices = 0};
-    skin_options o = options();
+    skin_options o = sheet_options();
     o.anchors = anchors;
-    sheet(&m, swell);
-    make(&s, &m, &o, 2);
-    ok(s.vertices == SIDE * SIDE && s.edges == 2 * SIDE * (SIDE - 1) + (SIDE - 1) * (SIDE - 1) && s.oscillates >= 1,
+    sheet_add(&m, swell);
+    sheet_make(&s, &m, &o, 2);
+    ok(s.vertices == SHEET_SIDE * SHEET_SIDE &&
+           s.edges == 2 * SHEET_SIDE * (SHEET_SIDE - 1) + (SHEET_SIDE - 1) * (SHEET_SIDE - 1) && s.oscillates >= 1,
        "%lld vertices, %lld springs, %.3g times critical damping at least", (long long)s.vertices, (long long)s.edges,
        s.oscillates);
     for (int t = 0; t <= 90; t++) {
         probe_placed at = press_at(p, .09 + .0003 * t, .1, .002 - .03 * fmin(1, t / 60.));
-        skin_step(&s, &at, 20);
+        sheet_step(&s, &at, 20);
         if (t == 90)
             ok(skin_largest(&s) > .02 && touched(&s, &at) > 5, "%s: pressed %.3g mm, %lld vertices touch", name,
                1e3 * skin_largest(&s), (long long)touched(&s, &at));
@@ -111,7 +51,7 @@ static void test_recovers(const probe *p, double swell, double anchors, const ch
     int frames = 0;
     for (; frames < 2000 && skin_largest(&s) > .2 * 1e-5; frames++) {
         double now = 0;
-        skin_step(&s, NULL, 20);
+        sheet_step(&s, NULL, 20);
         for (int64_t v = 0; v < 3 * s.vertices; v++)
             now += s.u[v] * s.u[v];
         for (int64_t v = 0; v < s.vertices; v++)
@@ -124,7 +64,7 @@ static void test_recovers(const probe *p, double swell, double anchors, const ch
     ok(beyond < .01 && rise <= 0,
        "%s: nothing oscillates: at most %.2g of the dent higher than when it let go, the whole never grows (%.2g)",
        name, beyond, rise);
-    done(&s);
+    sheet_done(&s);
     model_free(&m);
 }
 
@@ -133,24 +73,24 @@ static void test_anchor(void)
 {
     model m = {0};
     skin s = {.vertices = 0};
-    skin_options o = options();
-    sheet(&m, 0);
-    make(&s, &m, &o, 1);
+    skin_options o = sheet_options();
+    sheet_add(&m, 0);
+    sheet_make(&s, &m, &o, 1);
     double u = .01, v = 0, worst = 0;
-    int64_t middle = SIDE * (SIDE / 2) + SIDE / 2;
+    int64_t middle = SHEET_SIDE * (SHEET_SIDE / 2) + SHEET_SIDE / 2;
     for (int64_t i = 0; i < s.vertices; i++)
         s.u[3 * i] = u;
     for (int step = 0; step < 100; step++) {
         /* Vertices of other valences go at other speeds: look at the middle before it hears of them. */
         v += o.dt / s.inertia[middle] * (-s.anchor[middle] * u - s.held[middle] * v);
         u += o.dt * v;
-        skin_step(&s, NULL, 1);
-        if (step < SIDE / 2)
+        sheet_step(&s, NULL, 1);
+        if (step < SHEET_SIDE / 2)
             worst = fmax(worst, fabs(s.u[3 * middle] - u));
     }
     ok(worst < 1e-15, "an anchor pulls with -k x - gamma v: off by %.2g m", worst);
     near_(s.anchor[middle], .1 * 6 * 100, 1e-12, "an anchor is as stiff as asked");
-    done(&s);
+    sheet_done(&s);
     model_free(&m);
 }
 
@@ -158,9 +98,9 @@ static void test_normals(void)
 {
     model m = {0};
     skin s = {.vertices = 0};
-    skin_options o = options();
-    sheet(&m, 0);
-    make(&s, &m, &o, 1);
+    skin_options o = sheet_options();
+    sheet_add(&m, 0);
+    sheet_make(&s, &m, &o, 1);
     double *n = calloc((size_t)s.vertices, 3 * sizeof *n), worst = 0;
     for (int64_t v = 0; v < s.vertices; v++)
         s.u[3 * v + 2] = .5 * s.position[3 * v];
@@ -170,7 +110,7 @@ static void test_normals(void)
             fmax(worst, fabs(n[3 * v] + .5 / sqrt(1.25)) + fabs(n[3 * v + 1]) + fabs(n[3 * v + 2] - 1 / sqrt(1.25)));
     ok(n && worst < 1e-12, "normals of a sheet that is tilted: off by %.2g", worst);
     free(n);
-    done(&s);
+    sheet_done(&s);
     model_free(&m);
 }
 
@@ -180,14 +120,14 @@ static void test_threads(void)
     double *kept = NULL;
     bool same = true;
     const probe p = probe_sphere(.03);
-    sheet(&m, .005);
+    sheet_add(&m, .005);
     for (int threads = 1; threads <= 3; threads++) {
         skin s = {.vertices = 0};
-        skin_options o = options();
-        make(&s, &m, &o, threads);
+        skin_options o = sheet_options();
+        sheet_make(&s, &m, &o, threads);
         for (int t = 0; t < 20; t++) {
             probe_placed at = press_at(&p, .1, .1, .001 - .001 * t);
-            skin_step(&s, &at, 20);
+            sheet_step(&s, &at, 20);
         }
         if (!kept) {
             kept = s.u;
@@ -195,7 +135,7 @@ static void test_threads(void)
         } else {
             same = same && !memcmp(kept, s.u, 3 * (size_t)s.vertices * sizeof *kept);
         }
-        done(&s);
+        sheet_done(&s);
     }
     ok(same, "the same bytes by 1, 2 and 3 threads");
     free(kept);
@@ -209,14 +149,14 @@ static void test_bad(void)
     for (int i = 0; i < 2; i++) {
         model m = {0};
         skin s = {.vertices = 0};
-        skin_options o = options();
+        skin_options o = sheet_options();
         surface shape;
         err e = {0};
         obj file = {0};
         in *source = in_memory(text[i], strlen(text[i]), "bad.obj", &e);
-        must(source && !obj_read(&file, source, &e) && !surface_add(&m, "sheet", &file, 1, &e) &&
-                 !surface_of(&m, "sheet", &shape, &e),
-             &e);
+        sheet_must(source && !obj_read(&file, source, &e) && !surface_add(&m, "sheet", &file, 1, &e) &&
+                       !surface_of(&m, "sheet", &shape, &e),
+                   &e);
         ok(skin_make(&s, &shape, &o, NULL, &e) && strstr(e.text, want[i]), "%s", e.text);
         skin_free(&s);
         in_close(source);

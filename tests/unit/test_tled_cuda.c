@@ -506,16 +506,8 @@ static void test_messages(bool have_card)
 #endif
 }
 
-int main(void)
+static void test_steps_bytes(const tled_executor *twice, const tled_executor *once)
 {
-    const char *why;
-    const tled_executor *twice = bench_cuda(tled_executors_double, &why),
-                        *once = bench_cuda(tled_executors_single, &why);
-    test_messages(twice != NULL);
-    if (!twice || !once) {
-        skip(1, why);
-        return done_testing();
-    }
     test_all_bytes(&tled_cpu_double, twice, "double");
     test_all_bytes(&tled_cpu_single, once, "single");
     test_forms_bytes(&tled_cpu_double, twice, "double");
@@ -530,8 +522,16 @@ int main(void)
     test_cuts_looks(twice, once);
     test_all_marched(once);
     test_isotropic(twice, once);
+}
+
+static void test_contact(const tled_executor *twice, const tled_executor *once)
+{
     test_sliding(twice, once);
     test_touching(twice, once);
+}
+
+static void test_runs(const tled_executor *twice, const tled_executor *once)
+{
     test_long(twice, "double");
     test_long(once, "single");
     test_rest(twice, "double", 1e-5);
@@ -561,5 +561,25 @@ int main(void)
         test_memory(&large, rests, once, 140);
     }
     test_diverged(&tled_cpu_double, twice);
+}
+
+/* `test_tled_cuda contact`, or bytes, or runs: these alone, as all of them take minutes. */
+int main(int argc, char **argv)
+{
+    static const struct {
+        const char *name;
+        void (*test)(const tled_executor *twice, const tled_executor *once);
+    } parts[] = {{"bytes", test_steps_bytes}, {"contact", test_contact}, {"runs", test_runs}};
+    const char *why;
+    const tled_executor *twice = bench_cuda(tled_executors_double, &why),
+                        *once = bench_cuda(tled_executors_single, &why);
+    test_messages(twice != NULL);
+    if (!twice || !once) {
+        skip(1, why);
+        return done_testing();
+    }
+    for (int i = 0; i < 3; i++)
+        if (argc < 2 || !strcmp(argv[1], parts[i].name))
+            parts[i].test(twice, once);
     return done_testing();
 }
