@@ -216,12 +216,18 @@ CONTACT_FUNCTION bool contact_share_node(const self_contact *c, int32_t one, int
     return is;
 }
 
-/* Tells whether x lies in the box of an element, with its margins. */
-CONTACT_FUNCTION bool contact_in_box(const contact_table *t, int32_t element, const double *x)
+/* How much of the boxes' margin is not used yet, m; come: the most that a node has come since these were made. */
+CONTACT_FUNCTION double contact_spare(const self_contact *c, double come)
+{
+    return CONTACT_MARGIN * c->shortest - 2 * come;
+}
+
+/* Tells whether x lies in the box of an element, with as much of its margins as is used. */
+CONTACT_FUNCTION bool contact_in_box(const contact_table *t, int32_t element, const double *x, double spare)
 {
     bool is = true;
     for (int a = 0; a < 3; a++)
-        is &= x[a] >= t->low[3 * (int64_t)element + a] && x[a] <= t->high[3 * (int64_t)element + a];
+        is &= x[a] >= t->low[3 * (int64_t)element + a] + spare && x[a] <= t->high[3 * (int64_t)element + a] - spare;
     return is;
 }
 

@@ -71,19 +71,20 @@ static void list_work(void *context, int64_t chunk, int64_t from, int64_t to)
         contact_list(w->c, &w->table, w->side, w->large, i);
 }
 
-static bool has_moved(const self_contact_work *w)
+/* The most that a node has come since the list, m; infinite before the first, and where one is nowhere. */
+static double come_since(const self_contact_work *w)
 {
-    const double most = CONTACT_LISTED * w->c->shortest, square = most * most;
+    double most = w->is_listed ? 0 : INFINITY;
     for (int64_t n = 0; n < w->c->nodes; n++) {
         double way = 0;
         for (int a = 0; a < 3; a++) {
             const double d = w->x[3 * n + a] - w->listed[3 * n + a];
             way += d * d;
         }
-        if (!(way <= square))
-            return true;
+        if (!(way <= most))
+            most = isnan(way) ? INFINITY : way;
     }
-    return false;
+    return sqrt(most);
 }
 
 static void move_nodes(self_contact_work *w)
@@ -105,7 +106,10 @@ static void move_nodes(self_contact_work *w)
 void contact_near_list(self_contact_work *w, pool *threads)
 {
     move_nodes(w);
-    if (w->is_listed && !has_moved(w))
+    const double come = come_since(w);
+    const bool lists = come > CONTACT_LISTED * w->c->shortest;
+    w->spare = contact_spare(w->c, lists ? 0 : come);
+    if (!lists)
         return;
     memcpy(w->listed, w->x, 3 * (size_t)w->c->nodes * sizeof *w->x);
     pool_run(threads, w->c->samples, SAMPLES_CHUNK, place_work, w);

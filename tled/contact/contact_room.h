@@ -25,6 +25,7 @@ struct self_contact_work {
     int32_t abouts;
     bool is_listed;
     contact_table table;
+    double spare;  /* m: of the boxes' margin */
     double side;   /* m: of the table's cells */
     int32_t large; /* elements that are in none */
     int32_t *near; /* samples that have candidates */

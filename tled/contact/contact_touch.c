@@ -22,7 +22,7 @@ static int sort_candidates(const self_contact_work *w, int64_t sample, const dou
     const int32_t *list = w->table.candidate + CONTACT_CANDIDATES * (int64_t)element;
     int count = 0;
     for (int32_t k = 0; k < w->table.count[element]; k++) {
-        if (!contact_in_box(&w->table, list[k], x))
+        if (!contact_in_box(&w->table, list[k], x, w->spare))
             continue;
         const deformed_map d = contact_map(w->c, w->x, list[k]);
         const double square = deformed_from_middle(&d, x);

@@ -4,6 +4,7 @@
  * Sums over contacts are sums of whole numbers, which do not depend on the order: bytes are the same run after run, and
  * numbers are nearly the processor's. Blocks wait for each other between phases:
  *
+ *     slide    nodes that slide on bone take their steps
  *     gather   where nodes are, and how far they have come
  *     list     the table of elements, where nodes have come further than its margin: 6 phases
  *     touch    which samples touch; their nodes' shares
@@ -64,8 +65,10 @@ static __global__ void __launch_bounds__(SKIN_THREADS, SKIN_TOGETHER) skin_kerne
         list_elements(k, &phase, &desk[threadIdx.x / 32]);
     if (lists && blockIdx.x == 0 && threadIdx.x == 0)
         leave_lists(s);
-    if (blockIdx.x == 0 && threadIdx.x == 0)
+    if (blockIdx.x == 0 && threadIdx.x == 0) {
+        s.all->spare = contact_spare(&s.c, lists ? 0 : sqrt(of_bits(s.all->listed[odd])));
         leave(s, odd, drift);
+    }
     find_active(s, drift, odd);
     all_wait(k, &phase, gridDim.x);
     find_touches(k, drift, odd, &desk[threadIdx.x / 32]);

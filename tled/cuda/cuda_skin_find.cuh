@@ -242,13 +242,14 @@ static __device__ int warp_in_boxes(const cuda_skin &s, const int32_t *list, int
                                     skin_desk *desk)
 {
     enum { EACH = CONTACT_CANDIDATES / 32 };
+    const double spare = s.all->spare;
     bool is[EACH];
     int found = 0;
     __syncwarp();
 #pragma unroll
     for (int k = 0; k < EACH; k++) {
         const int i = lane + 32 * k;
-        is[k] = contact_in_box(&s.table, list[i < count ? i : 0], x) & (i < count);
+        is[k] = contact_in_box(&s.table, list[i < count ? i : 0], x, spare) & (i < count);
     }
 #pragma unroll
     for (int k = 0; k < EACH; k++) {

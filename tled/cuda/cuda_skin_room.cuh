@@ -55,6 +55,7 @@ typedef struct cuda_skin_all {
     skin_whole most[2], listed[2]; /* bits of the most that a node has come since the launch before, and since the
                                         list, squared, m2 */
     skin_whole longest, widest;    /* bits, m: of boxes */
+    double spare;                  /* m: of their margin, in this launch */
     int32_t touches[2], abouts[2], actives[2], finding[2]; /* finding: of these, those that are taken */
     int32_t filled, large, listing;                        /* of the table, and of owners, so far */
     int32_t longer[CONTACT_SIZES];                         /* boxes */
