@@ -212,8 +212,10 @@ bench-table1: all $(BUILD)/tests/bench/bench_tled
 CONTACT_FACE = $(wildcard $(or $(SINEW_SHARED),../shared)/data/face/face_all.obj)
 CONTACT_SIDES = 2.5
 CONTACT_SIDES_CARD = 2.5 1.25
-CONTACT_RUN = tests/bench/contact $(BIN) $(CONTACT_FACE) $(BUILD)/tests/bench/contact-models $(shell nproc)
+CONTACT_MODELS = $(BUILD)/tests/bench/contact-models
+CONTACT_RUN = tests/bench/contact $(BIN) $(CONTACT_FACE) $(CONTACT_MODELS) $(shell nproc)
 bench-contact: all
+	@rm -rf $(CONTACT_MODELS) # of other tools, maybe
 	@$(if $(CONTACT_FACE),$(CONTACT_RUN) 3 cpu $(CONTACT_SIDES),echo '# skipped: no face_all.obj in SINEW_SHARED')
 	@! nvidia-smi >/dev/null 2>&1 || $(if $(CONTACT_FACE),$(CONTACT_RUN) 7 cuda $(CONTACT_SIDES_CARD),true)
 $(BUILD)/tests/bench/face_%mm: all

@@ -38,6 +38,8 @@ typedef struct skin_view {
     double *next_u, *next_v;
 } skin_view;
 
+/* Adds what an edge pulls its vertex v with: its spring and damper (PST equation 1), and, as under tension, a share of
+ * both across itself. */
 SKIN_FUNCTION void skin_pull(const skin_view *s, int64_t v, const skin_spring *spring, double *force)
 {
     const double *x = s->position, *u = s->u, *w = s->v, k = s->options.stiffness;
