@@ -23,7 +23,8 @@ SECONDS ?= 5
 # make soak those of SOAK, which take longer.
 SLOW = $(addprefix tests/cli/,attach_surface.t element.t voxelise_exact.t voxelise_films.t voxelise_mixed.t) $(UNIT_TEST)voxelise_scan $(UNIT_TEST)voxelise_inside $(UNIT_TEST)checkpoint \
 	$(addprefix tests/cli/,calculix.t conforming.t element-nvcc.t examples.t hostile.t killed.t msds-long.t msds-probe.t muscle.t) \
-	$(addprefix tests/cli/,quoted.t readme.t samples.t shells.t slits.t tissue-laws.t tled.t us-bad.t us-import-packed.t us-private.t us-slice.t voxelise_strain.t)
+	$(addprefix tests/cli/,quoted.t readme.t samples.t shells.t slits.t tissue-laws.t tled.t us-bad.t us-import-packed.t us-private.t us-slice.t voxelise_strain.t) \
+	tests/cli/self_contact.t
 SOAK = $(UNIT_TEST)tled_emulated $(addprefix tests/cli/,calls.t faults.t memory.t restart.t streams.t threads.t)
 UNIT_TEST = $(BUILD)/tests/unit/test_
 # As many jobs as processors, unless make was told (then its job server serves the inner makes too).
