@@ -7,11 +7,12 @@
 #     make expressions FACE=face_all.obj EXPRESSIONS_SIDE=1.25
 #
 # The lips, in a box, touch each other, and may slide on the teeth and come off them; of another face EXPRESSIONS_LIPS=auto takes all
-# that is about its mouth, EXPRESSIONS_SLIDE= lets nothing slide, and EXPRESSIONS_LANDMARKS names its own landmarks.
+# that is about its mouth, EXPRESSIONS_LIPS= lets nothing touch, EXPRESSIONS_SLIDE= lets nothing slide, and EXPRESSIONS_LANDMARKS names its own landmarks.
 #
 # The skull is cut into skull and jaw as in jaw.mk. Tissue and muscles are those of face.materials.
 
 EXPRESSIONS_SIDE = 2.5
+EXPRESSIONS_SLITS = on
 EXPRESSIONS_LIPS = skin:-28,50,-102,28,90,-65
 EXPRESSIONS_SLIDE = skull,skull_jaw:-22,40,-108,22,75,-58
 EXPRESSIONS_TISSUE = -m muscle.peak=3e5
@@ -27,9 +28,9 @@ expressions: $(EXPRESSIONS).png $(EXPRESSIONS).tsv $(EXPRESSIONS:.expressions=.l
 
 $(EXPRESSIONS).model: $(if $(FACE),$(JAW_OUT).obj) face.materials
 	$(if $(FACE),,$(error no face; expected FACE=FILE.obj, a face with groups skin, skull and muscle_*))
-	voxelise --unit mm -s $(EXPRESSIONS_SIDE) --fraction 4 --materials face.materials $< | \
+	voxelise --unit mm -s $(EXPRESSIONS_SIDE) --fraction 4 --slits $(EXPRESSIONS_SLITS) --materials face.materials $< | \
 	    attach --rigid skull,skull_jaw --part jaw=skull_jaw $(if $(EXPRESSIONS_SLIDE),--slide-off $(EXPRESSIONS_SLIDE)) | \
-	    sinew bind --self-contact $(EXPRESSIONS_LIPS) >$@
+	    sinew bind $(if $(EXPRESSIONS_LIPS),--self-contact $(EXPRESSIONS_LIPS)) >$@
 $(EXPRESSIONS).script: expressions.face.script | $(OUT)
 	sed 's/ face:/ $(JAW_NAME).jaw:/' $< >$@
 $(EXPRESSIONS).result: $(EXPRESSIONS).model $(EXPRESSIONS).script face.expressions

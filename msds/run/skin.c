@@ -8,7 +8,7 @@
 
 enum { CHUNK = 512, TURNS = 50 };
 
-/* Of what is stable; over what is critical. */
+/* Inertia is so large that a step is this share of a stable one, and the anchors damp this many times critically. */
 static const double safe = .9, damped = 1.1;
 
 static int cut(skin *s, const surface *shape, err *e)
@@ -224,8 +224,10 @@ int skin_change(skin *s, const skin_options *o, err *e)
 {
     s->options = *o;
     settle_all(s);
+    if (!s->on_device)
+        return 0;
     const skin_view view = view_of(s);
-    return s->on_device ? s->device->change(s->on_device, &view, e) : 0;
+    return s->device->change(s->on_device, &view, e);
 }
 
 int skin_reset(skin *s, err *e)

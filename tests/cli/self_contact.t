@@ -156,21 +156,21 @@ fails 2 "friction of nothing" "bind --self-contact" tled-run --friction .1 -t 0.
 # ---- lips of a real face that are pursed, as expressions.mk has them: pairs of triangles of the skin that cross, and the deepest, mm
 pursed() {
     tled-run -q -d cpu --precision single -m muscle.peak=3e5 --script "$T/purse" --expressions samples/face.expressions \
-        --rise-fall 0.01,0.04 -t 0.35 <"$1" 2>"$T/said" | sinew deform -q "$T/lips.obj" >"$T/pursed.obj"
+        --rise-fall 0.01,0.04 -t 0.35 <"$T/$1/face_all.expressions.model" 2>"$T/said" | sinew deform -q "$T/$1/face_all.jaw.obj" >"$T/pursed.obj"
     /usr/bin/python3 "$here/crossing.py" skin "$T/pursed.obj"
 }
 if [ "$SINEW_LONG" ] && [ -n "$DATA" ] && [ -f "$DATA/face/face_all.obj" ] && /usr/bin/python3 -c 'import numpy' 2>/dev/null; then
     printf '0 contract @pucker 0\n0.1 contract @pucker 1\n' >"$T/purse"
-    awk -v forward=2 -v up=3 -v gap=11 -v jaw="300,-83 30,-78 18,-52 5,-40 -300,-40 -300,-400 300,-400" -f samples/jaw.awk \
-        "$DATA/face/face_all.obj" >"$T/lips.obj"
-    voxelise -q --unit mm -s 2.5 --fraction 4 --materials samples/face.materials "$T/lips.obj" 2>"$T/said" |
-        attach -q --rigid skull,skull_jaw --part jaw=skull_jaw --slide-off skull,skull_jaw:-22,40,-108,22,75,-58 2>"$T/said" |
-        sinew bind -q >"$T/apart" 2>"$T/said"
-    sinew bind -q --self-contact skin:-28,50,-102,28,90,-65 <"$T/apart" >"$T/lips" 2>"$T/said"
-    pursed "$T/apart" >"$T/crossing"
+    for lips in apart together; do
+        set -- # as expressions.mk has lips, or none that touch
+        [ $lips = together ] || set -- EXPRESSIONS_LIPS=
+        env -u MAKEFLAGS -u MFLAGS -u MAKELEVEL make -s -C samples OUT="$T/$lips" FACE="$(realpath "$DATA")/face/face_all.obj" "$@" \
+            "$T/$lips/face_all.expressions.model" 2>"$T/said"
+    done
+    pursed apart >"$T/crossing"
     # shellcheck disable=SC2016 # of awk
     check "lips pass through each other without it: $(cat "$T/crossing")" awk '{ exit !($2 > .5) }' "$T/crossing"
-    pursed "$T/lips" >"$T/crossing"
+    pursed together >"$T/crossing"
     # shellcheck disable=SC2016 # of awk
     check "with it no pair is deeper than .2 mm: $(cat "$T/crossing")" awk '{ exit !($2 < .2) }' "$T/crossing"
 else
