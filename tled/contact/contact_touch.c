@@ -106,6 +106,7 @@ static bool find_touch(const self_contact_work *w, int64_t sample, touch *t, dou
     contact_place(w->c, w->x, sample, x);
     t->sample = (int32_t)sample;
     t->sides = 2;
+    t->carried[0] = t->carried[1] = t->carried[2] = 0;
     t->element = find_element(w, sample, x, place);
     *clear = CONTACT_MARGIN * w->c->shortest;
     if (t->element < 0 || (w->c->blend && !blend_place(w, t->element, x, place)) ||
