@@ -121,6 +121,26 @@ live --script "$T/script" --precision single -t .3
 is $? 0 "a script in a live run"
 replays "a script" --script "$T/script" --precision single
 
+# Nodes that slide on a bone which moves; skin that touches itself.
+mv "$T/model" "$T/plain"
+awk -v E=30000 -v nx=8 -v ny=8 -v nz=3 -v h=.0025 -f tests/cli/block.awk |
+    awk -v nx=8 -v ny=8 -v h=.0025 -v R=.05 -f tests/cli/slide.awk | awk -v body=plate -f tests/cli/slide.awk >"$T/model"
+printf '%s\n' 'now gravity 0,0,-5' 'now move plate 1mm,0,2mm 0,0,0,1' 'now displace 12mm,9mm,-1mm,13mm,11mm,1mm -,.2mm,-' >"$T/lines"
+live_lines() {
+    rm -f "$T/record"
+    cat "$T/model" "$T/lines" | tled-run --text -q --live -t .3 --control - --record "$T/record" >"$T/out" 2>/dev/null
+}
+live_lines
+is "$(lines '^now')" 3 "lines that move bone and nodes that slide"
+replays "nodes that slide"
+awk -v boxes='slit 0,40,0,40,-20,0,8,8; slit 0,40,0,40,5,25,8,8' -f tests/cli/boxes.awk >"$T/slit.obj"
+voxelise --text -q --unit mm -s 4 --fraction 4 "$T/slit.obj" 2>/dev/null | sinew bind --text -q --self-contact slit >"$T/model"
+printf '%s\n' 'now displace -9mm,-9mm,-30mm,49mm,49mm,-17mm 0,0,0' 'now displace -9mm,-9mm,22mm,49mm,49mm,35mm 0,0,-7mm' >"$T/lines"
+live_lines
+is "$(lines '^now')" 2 "lines that close a slit"
+replays "skin that touches"
+mv "$T/plain" "$T/model"
+
 # A probe: the newest pose; its frame's is the one that is recorded.
 printf 'volume move=0,0,1cm\n' >"$T/body"
 rm -f "$T/record"

@@ -117,6 +117,23 @@ cut_off "$T/point" \
     <"$T/slit"
 shut --restart "$T/point" --checkpoint "$T/point" -o "$T/cut" <"$T/slit"
 is "$(cmp "$T/shut" "$T/cut" 2>&1)" "" "and a run that was cut off goes on to the same bytes"
+shut --every 5e-5 <"$T/slit" | sinew info --get node.displacement.max >"$T/each"
+is "$(cat "$T/each")" "$(get node.displacement.max "$T/shut")" "however many frames are written on the way"
+
+# ---- skin that is crushed: a dozen plates, moved to one place
+boxes=$(awk 'BEGIN { for (k = 0; k < 12; k++) printf "%slayers 0,20,0,20,%d,%d,4,4", k ? ";" : "", 15 * k, 15 * k + 10 }')
+awk -v boxes="$boxes" -f "$here/boxes.awk" >"$T/plates.obj"
+awk 'BEGIN {
+    for (k = 1; k < 12; k++) {
+        plate = sprintf("displace -1,-1,%dmm,1,1,%dmm", 15 * k - 2, 15 * k + 12)
+        print 0, plate, "0,0,0"
+        print .02, plate, "0,0,-" 15 * k "mm"
+    }
+}' >"$T/crush"
+voxelise -q --unit mm -s 5 "$T/plates.obj" 2>/dev/null | sinew bind -q --self-contact layers >"$T/plates"
+tled-run -d cpu -t .03 --script "$T/crush" <"$T/plates" 2>"$T/said" >"$T/out"
+check "elements near more than 64 others are told" grep -q 'warning: [1-9][0-9]* elements of skin had more than 64 other elements near them' "$T/said"
+is "$(tled-run -q -d cpu -t .13 --script "$T/close" -m tissue.E=3000 <"$T/slit" 2>&1 >/dev/null)" "" "and none where there are none"
 
 # ---- two balls of 20 mm meet, one a little aside
 awk -v R=20 -v GAP=1 -v OFF=6 -f "$here/balls.awk" >"$T/balls.obj"

@@ -5,6 +5,7 @@
 // needs: tled/cuda/march.c tled/cuda/march_units.c tled/cuda/march_near.c tled/cuda/march_tips.c
 // needs: tled/cuda/march_cells.c tled/tiles/lattice_sheet.c tled/tiles/places.c  tled/*/*.c
 #include "tled_card_runs.h"
+#include "tled_live_trial.h"
 
 #ifdef SINEW_CUDA
 #include "solve/card.h"
@@ -336,6 +337,10 @@ static void test_touching(const tled_executor *twice, const tled_executor *once)
     test_bytes(&lump, 0, true, 1000, once, once, "single, skin that rubs, run after run");
     in_touching = NULL;
     in_slit = NULL;
+    trial_touch(true);
+    trial_beside(&trial_touching, trial_touching_lines, &tled_cpu_double, twice, 1e-6,
+                 "double, skin and sliding nodes");
+    trial_touch(false);
 }
 
 /* Isotropic control: the CPU's bytes, and a look. */

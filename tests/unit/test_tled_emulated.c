@@ -329,27 +329,25 @@ static int no_fetch(tled_state *state, int slot, const field_values *to, err *e)
 /* Lines that come live, beside a processor: new targets taken over in place, or by a state that is made again. */
 static void test_live(const emulated_card *card, bool again, const char *name)
 {
-    live_trial here, there;
     tled_executor alone = tled_cuda_single;
     alone.snapshot = no_snapshot;
     alone.fetch = no_fetch;
     if (again)
         alone.reload = NULL;
-    double most = 0, off = 0;
     put_in(card, 5, 4);
-    trial_begin(&here, &trial_block, false, trial_lines, 1);
-    trial_begin(&there, &trial_block, false, trial_lines, 1);
-    here.b.setup.device = &tled_cpu_single;
-    there.b.setup.device = &alone;
-    ok(!trial_go(&here) && !trial_go(&there), "%s, live: goes on to its end %s", name, there.b.e.text);
-    for (int64_t i = 0; i < 3 * here.b.problem.nodes; i++) {
-        most = fmax(most, fabs(here.seen[i]));
-        off = fmax(off, fabs(here.seen[i] - there.seen[i]));
-    }
-    ok(most > 1e-3 && off < 1e-4 * most && there.b.frames == here.b.frames, "%s, live: as on a processor, to %.1e",
-       name, off / most);
-    trial_free(&here);
-    trial_free(&there);
+    trial_beside(&trial_block, trial_lines, &tled_cpu_single, &alone, 1e-4, name);
+}
+
+/* And where skin touches and nodes slide. */
+static void test_live_touching(const emulated_card *card, const char *name)
+{
+    tled_executor alone = tled_cuda_double;
+    alone.snapshot = no_snapshot;
+    alone.fetch = no_fetch;
+    put_in(card, 5, 4);
+    trial_touch(true);
+    trial_beside(&trial_touching, trial_touching_lines, &tled_cpu_double, &alone, 1e-6, name);
+    trial_touch(false);
 }
 
 static void test_isotropic(int64_t steps)
@@ -553,11 +551,13 @@ int main(void)
     test_pressing(2 * more);
     test_touching(2 * more);
     test_live(&marching, false, "a march");
+    test_live_touching(&plain, "skin and sliding nodes in bricks");
     if (all_of_it) {
         test_live(&marching, true, "a march, made again");
         test_live(&plain, false, "bricks");
         test_live(&staying, false, "resident bricks");
         test_live(&staying, true, "resident bricks, made again");
+        test_live_touching(&marching, "skin and sliding nodes where it marches");
     }
     test_isotropic(3 * more);
     test_looks(2 * more);

@@ -6,13 +6,13 @@
 #include "tled_live_trial.h"
 
 /* In place, and by a state that is made again. */
-static void anew(const tled_executor *device, bool mesh, const char *name)
+static void anew(const block *what, const trial_event *events, const tled_executor *device, bool mesh, const char *name)
 {
     tled_executor other = *device;
     live_trial a, b;
     other.reload = NULL;
-    trial_begin(&a, &trial_block, mesh, trial_lines, 1);
-    trial_begin(&b, &trial_block, mesh, trial_lines, 3);
+    trial_begin(&a, what, mesh, events, 1);
+    trial_begin(&b, what, mesh, events, 3);
     a.b.setup.device = device;
     b.b.setup.device = &other;
     const int failed = trial_go(&a) || trial_go(&b);
@@ -102,9 +102,12 @@ static void breaks(void)
 
 int main(void)
 {
-    anew(&tled_cpu_double, false, "boxes, double");
-    anew(&tled_cpu_single, false, "boxes, single");
-    anew(&tled_cpu_meshes_double, true, "a mesh, double");
+    anew(&trial_block, trial_lines, &tled_cpu_double, false, "boxes, double");
+    anew(&trial_block, trial_lines, &tled_cpu_single, false, "boxes, single");
+    anew(&trial_block, trial_lines, &tled_cpu_meshes_double, true, "a mesh, double");
+    trial_touch(true);
+    anew(&trial_touching, trial_touching_lines, &tled_cpu_double, false, "skin and sliding nodes, double");
+    trial_touch(false);
     kept();
     breaks();
     return done_testing();

@@ -7,6 +7,10 @@
 
 static const block trial_block = {{4, 3, 5}, {.01, .012, .009}, 3000, .45, 1000, 30000, 2, 1, 0, {1, 0, 0}, 0, false};
 
+/* For trial_touch. */
+static const block trial_touching = {
+    {5, 3, 2 * SKIN_MIDDLE}, {.01, .012, .009}, 3000, .45, 1000, 30000, 0, 1, 0, {1, 0, 0}, 0, false};
+
 enum { TRIAL_TICKS = 24, TRIAL_RATE = 60 };
 
 /* What comes before which tick. */
@@ -32,6 +36,17 @@ static const trial_event trial_lines[] = {{1, "now gravity 0,0,-4"},
                                           {17, "now pull r 0,36mm,45mm 13mm 0,36mm,50mm 6"},
                                           {20, "now release r"},
                                           {0, NULL}};
+
+/* Nodes that slide, and nodes of skin, are held and moved. */
+static const trial_event trial_touching_lines[] = {{1, "now gravity 0,0,-4"},
+                                                   {2, "now displace 2cm,0,0,1,1,0 .5mm,-,-"},
+                                                   {4, "now displace 3cm,0,27mm,1,1,27mm -,1mm,-"},
+                                                   {6, "now contract m .2"},
+                                                   {8, "now move rod 0,0,1mm 0,0.03,0,0.99955 about 0,0,2cm"},
+                                                   {11, "now displace 3cm,0,27mm,1,1,27mm -,2mm,-"},
+                                                   {13, "now displace 2cm,0,0,1,1,0 1mm,-,-"},
+                                                   {14, "now displace 0,0,0,0,1,0 2mm,-,-"},
+                                                   {0, NULL}};
 
 typedef struct live_trial {
     bench b; /* first: the context of frames */
@@ -101,6 +116,10 @@ static inline void trial_begin(live_trial *t, const block *what, bool mesh, cons
     bench_must(script_add_idle(&b->script, &b->m, &b->e) ||
                    tled_problem_make(&b->problem, &b->m, &b->script, PHYSICAL, &b->e),
                &b->e);
+    if (in_sliding)
+        add_sliding(b, what);
+    if (in_touching)
+        add_skin(b, what);
     bench_finish(b, threads);
     bench_steps(b, TRIAL_TICKS, b->setup.damping);
     const double parts = ceil(1. / TRIAL_RATE / (RUN_MARGIN * step_at_rest(&b->problem, NULL)));
@@ -131,6 +150,37 @@ static inline void trial_free(live_trial *t)
 {
     free(t->seen);
     bench_free(&t->b);
+}
+
+/* Two executors, live, beside each other: the same to the end but for `least` of the largest displacement. */
+static inline void trial_beside(const block *what, const trial_event *events, const tled_executor *one,
+                                const tled_executor *other, double least, const char *name)
+{
+    live_trial here, there;
+    double most = 0, off = 0;
+    trial_begin(&here, what, false, events, 1);
+    trial_begin(&there, what, false, events, 1);
+    here.b.setup.device = one;
+    there.b.setup.device = other;
+    ok(!trial_go(&here) && !trial_go(&there), "%s, live: goes on to its end %s", name, there.b.e.text);
+    for (int64_t i = 0; i < 3 * here.b.problem.nodes; i++) {
+        most = fmax(most, fabs(here.seen[i]));
+        off = fmax(off, fabs(here.seen[i] - there.seen[i]));
+    }
+    ok(most > 1e-3 && off < least * most && there.b.frames == here.b.frames, "%s, live: as on a processor, to %.1e",
+       name, off / most);
+    trial_free(&here);
+    trial_free(&there);
+}
+
+/* From here on, or no longer, skin of a slit touches itself and a bone below, on which nodes slide: for
+ * trial_touching. */
+static inline void trial_touch(bool is)
+{
+    static const touching all = {.3, true, true};
+    in_slit = is ? &slits[2] : NULL;
+    in_touching = is ? &all : NULL;
+    in_sliding = is;
 }
 
 #endif

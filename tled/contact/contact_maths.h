@@ -11,9 +11,9 @@
 #define CONTACT_FUNCTION MOVES_FUNCTION
 
 enum {
-    CONTACT_CANDIDATES = 64, /* of an element: those that its samples may be in */
-    CONTACT_PASSES = 4,      /* of Jacobi's iteration */
-    CONTACT_TURNS = 2        /* in which a place is found that moves blended */
+    CONTACT_CANDIDATES = SELF_CONTACT_BESIDE, /* of an element: those that its samples may be in */
+    CONTACT_PASSES = 4,                       /* of Jacobi's iteration */
+    CONTACT_TURNS = 2                         /* in which a place is found that moves blended */
 };
 
 /* Of an element's shortest side: how much wider boxes of elements are than these. */
@@ -65,7 +65,8 @@ typedef struct contact_table {
     double *middle;     /* elements x 3: the skin's normal at their middles */
     double *low, *high; /* elements x 3, m: their boxes, with margins */
     int32_t *count;     /* elements: those that their samples may be in: */
-    int32_t *candidate; /* elements x CONTACT_CANDIDATES, ascending */
+    int32_t *candidate; /* elements x CONTACT_CANDIDATES, ascending: the first of them, where there are more */
+    int32_t *crowded;   /* elements: 1 where there were more in any list so far */
     int32_t *cell;      /* elements: the cell of the middle of each; -1: it is large */
     int32_t *start;     /* cells: where those of each begin in: */
     int32_t *of;        /* elements, by cells; last, those that are large */
@@ -253,7 +254,11 @@ CONTACT_FUNCTION void contact_add_candidate(const contact_table *t, int64_t to, 
     int32_t *list = t->candidate + CONTACT_CANDIDATES * to, n = t->count[to], at = n;
     while (at > 0 && list[at - 1] >= element)
         at--;
-    if ((at < n && list[at] == element) || at == CONTACT_CANDIDATES)
+    if (at < n && list[at] == element)
+        return;
+    if (n == CONTACT_CANDIDATES)
+        t->crowded[to] = 1;
+    if (at == CONTACT_CANDIDATES)
         return;
     n = n < CONTACT_CANDIDATES ? n + 1 : n;
     for (int32_t k = n - 1; k > at; k--)

@@ -100,7 +100,7 @@ static void move_nodes(self_contact_work *w)
         }
         most = fmax(most, square);
     }
-    w->drift += sqrt(most);
+    w->drift = w->is_listed ? w->drift + sqrt(most) : 0;
 }
 
 void contact_near_list(self_contact_work *w, pool *threads)

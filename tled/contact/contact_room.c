@@ -25,6 +25,7 @@ void self_contact_room_free(self_contact_work *w)
     free(w->table.high);
     free(w->table.count);
     free(w->table.candidate);
+    free(w->table.crowded);
     free(w->table.cell);
     free(w->table.start);
     free(w->table.of);
@@ -71,6 +72,7 @@ self_contact_work *contact_room_make(const tled_problem *p, const self_contact *
         (t->high = mem_array(c->elements, 3 * sizeof *t->high, what, e)) &&
         (t->count = mem_array(c->elements, sizeof *t->count, what, e)) &&
         (t->candidate = mem_array(c->elements, CONTACT_CANDIDATES * sizeof *t->candidate, what, e)) &&
+        (t->crowded = mem_array(c->elements, sizeof *t->crowded, what, e)) &&
         (t->cell = mem_array(c->elements, sizeof *t->cell, what, e)) &&
         (t->start = mem_array(t->cells, sizeof *t->start, what, e)) &&
         (t->of = mem_array(c->elements, sizeof *t->of, what, e)) &&
@@ -95,7 +97,7 @@ self_contact_work *self_contact_room(const tled_problem *p, err *e)
 
 static int64_t contact_table_bytes(const self_contact *c, int64_t cells)
 {
-    return c->elements * (15 * (int64_t)sizeof(double) + (CONTACT_CANDIDATES + 3) * (int64_t)sizeof(int32_t)) +
+    return c->elements * (15 * (int64_t)sizeof(double) + (CONTACT_CANDIDATES + 4) * (int64_t)sizeof(int32_t)) +
            2 * cells * (int64_t)sizeof(int32_t) + 3 * c->samples * (int64_t)sizeof(double);
 }
 
@@ -109,6 +111,25 @@ int64_t self_contact_bytes(const self_contact_work *w)
            c->samples *
                ((2 + (c->solids > 0)) * (int64_t)sizeof(touch) + 8 * (1 + c->solids) + (int64_t)sizeof(int32_t)) +
            contact_table_bytes(c, w->table.cells);
+}
+
+void self_contact_forget(self_contact_work *w)
+{
+    if (!w)
+        return;
+    const self_contact *c = w->c;
+    w->is_listed = false;
+    memset(w->until, 0, (size_t)c->samples * sizeof *w->until);
+    memset(w->bone_until, 0, (size_t)(c->solids * c->samples) * sizeof *w->bone_until);
+    memset(w->solid, 0, (size_t)c->solids * sizeof *w->solid);
+}
+
+int64_t self_contact_crowded(const self_contact_work *w)
+{
+    int64_t count = 0;
+    for (int64_t i = 0; w && i < w->c->elements; i++)
+        count += w->table.crowded[i];
+    return count;
 }
 
 double *self_contact_displacement(self_contact_work *w)

@@ -30,7 +30,7 @@ struct self_contact_work {
     int32_t large; /* elements that are in none */
     int32_t *near; /* samples that have candidates */
     int64_t nears;
-    double drift;  /* m: how far the fastest node has come since the start, step by step */
+    double drift;  /* m: how far the fastest node has come since the first list, step by step */
     double *until; /* samples, m: by what drift one may touch */
     touch *touch;  /* samples x 2: first one for each of near, of element -1 where that touches nothing; then those that
                       do, and those in bone */

@@ -36,6 +36,8 @@
 
 #define SELF_CONTACT_DEEP .1 /* of a shortest side: deeper than that at rest is worth a word */
 
+enum { SELF_CONTACT_BESIDE = 64 /* elements that are kept of those beside one */ };
+
 typedef struct self_contact {
     int64_t samples, elements, nodes; /* elements: that samples may be in; nodes: of these, and what moves samples */
     int32_t *node;                    /* nodes: of the model; all is owned */
@@ -75,6 +77,12 @@ typedef struct self_contact_work self_contact_work;
 self_contact_work *self_contact_room(const tled_problem *p, err *e);
 void self_contact_room_free(self_contact_work *w);
 int64_t self_contact_bytes(const self_contact_work *w);
+
+/* Forgets what it knows from steps before: those from here on are as if it had been made now. */
+void self_contact_forget(self_contact_work *w);
+
+/* How many elements had more beside them, in any step so far, than a list keeps: of the others nothing was felt. */
+int64_t self_contact_crowded(const self_contact_work *w);
 
 /* Displacements of the nodes (nodes x 3), the caller's to fill after the predictor. */
 double *self_contact_displacement(self_contact_work *w);

@@ -277,6 +277,7 @@ static int copy_out(const cpu_state *s, int where, number **to, err *e)
 
 static int cpu_save(cpu_state *s, err *e)
 {
+    self_contact_forget(s->skin);
     return copy_out(s, FIELDS_ALL, &s->saved, e);
 }
 
@@ -284,6 +285,7 @@ static int cpu_restore(cpu_state *s, err *e)
 {
     const number *at = s->saved;
     (void)e;
+    self_contact_forget(s->skin);
     for (int i = 0; i < s->p->fields.count; i++) {
         const cpu_layout l = layout_of(s, i);
         memcpy(s->field[i], at, (size_t)(l.columns * l.stride) * sizeof *at);
@@ -566,10 +568,18 @@ static int64_t cpu_computed(const cpu_state *s)
     return s->rows.cells;
 }
 
+static int cpu_crowded(cpu_state *s, int64_t *count, err *e)
+{
+    (void)e;
+    *count = self_contact_crowded(s->skin);
+    return 0;
+}
+
 /* What both have. */
 #define CPU_FUNCTIONS                                                                                                  \
     .destroy = cpu_destroy, .step = cpu_step, .get = cpu_get, .save = cpu_save, .restore = cpu_restore,                \
-    .snapshot = cpu_snapshot, .fetch = cpu_fetch, .reload = cpu_reload, .bytes = cpu_bytes, .computed = cpu_computed
+    .snapshot = cpu_snapshot, .fetch = cpu_fetch, .reload = cpu_reload, .bytes = cpu_bytes, .crowded = cpu_crowded,    \
+    .computed = cpu_computed
 
 enum { CPU_FEATURES = EXECUTOR_USUAL | EXECUTOR_CONTACT | EXECUTOR_FOLLOWERS };
 

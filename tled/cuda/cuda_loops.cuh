@@ -92,7 +92,9 @@ static int slide_and_touch(cuda_state *s, const cuda_batch *b, err *e)
                           b->rows,
                           b->rows + 3 * s->p->script->curves,
                           1 / b->plan->rate,
-                          s->skin_launches++};
+                          s->skin_launches++,
+                          !s->skin_is_known};
+    s->skin_is_known = true;
     return card_check(skin_start(k, s->skin_blocks, following), "the start of skin contact", s->step, e);
 }
 
@@ -222,6 +224,7 @@ static int cuda_save(cuda_state *s, err *e)
     if (s->saved_internal && find_internal(s, e))
         return -1;
     s->has_saved_internal = s->saved_internal != NULL;
+    s->skin_is_known = false;
     s->saved_step = s->step;
     s->saved_time = s->time;
     real *at = s->saved + CUDA_STEPPED * 3 * s->view.stride;
@@ -236,7 +239,7 @@ static int cuda_save(cuda_state *s, err *e)
 static int cuda_restore(cuda_state *s, err *e)
 {
     const real *at = s->saved;
-    s->spare_is_internal = false;
+    s->spare_is_internal = s->skin_is_known = false;
     s->step = s->saved_step;
     s->time = s->saved_time;
     for (int i = 0; i < s->p->fields.count; i++) {
@@ -439,6 +442,22 @@ static int cuda_reload(cuda_state *s, err *e)
     return CUDA_TRY(cudaDeviceSynchronize());
 }
 
+static int cuda_crowded(cuda_state *s, int64_t *count, err *e)
+{
+    const int64_t elements = s->skin_memory ? s->p->self_contact->elements : 0;
+    int32_t *is = (int32_t *)mem_array(elements, sizeof *is, "the skin", e);
+    const int failed =
+        !is ||
+        (elements &&
+         (CUDA_TRY(cudaDeviceSynchronize()) ||
+          CUDA_TRY(cudaMemcpy(is, s->skin.table.crowded, (size_t)elements * sizeof *is, cudaMemcpyDeviceToHost))));
+    *count = 0;
+    for (int64_t i = 0; i < elements && !failed; i++)
+        *count += is[i];
+    free(is);
+    return failed ? -1 : 0;
+}
+
 static int64_t cuda_computed(const cuda_state *s)
 {
     return s->method->computed(s);
@@ -459,4 +478,5 @@ const tled_executor CUDA_EXECUTOR = {
     .fetch = cuda_fetch,
     .monitor = cuda_monitor,
     .bytes = cuda_bytes,
+    .crowded = cuda_crowded,
     .computed = cuda_computed};

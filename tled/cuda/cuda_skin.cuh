@@ -59,8 +59,8 @@ static __global__ void __launch_bounds__(SKIN_THREADS, SKIN_TOGETHER) skin_kerne
     slide_nodes(k, &phase);
     gather(k, odd);
     all_wait(k, &phase, gridDim.x);
-    const double drift = s.all->drift[odd] + sqrt(of_bits(s.all->most[odd]));
-    const bool lists = !k.launch || !(of_bits(s.all->listed[odd]) <= most * most);
+    const double drift = k.anew ? 0 : s.all->drift[odd] + sqrt(of_bits(s.all->most[odd]));
+    const bool lists = k.anew || !(of_bits(s.all->listed[odd]) <= most * most);
     if (lists)
         list_elements(k, &phase, &desk[threadIdx.x / 32]);
     if (lists && blockIdx.x == 0 && threadIdx.x == 0)

@@ -23,8 +23,9 @@ static __device__ void move_solids(const cuda_touch &k, int odd)
         return;
     const sliding_field *f = &s.ground.field[s.c.solid[i]];
     const sliding_bone is = sliding_bone_of(f, k.next),
-                       was = k.launch ? s.all->solid_was[odd][i] : sliding_bone_of(f, k.now);
-    s.all->solid_drift[!odd][i] = s.all->solid_drift[odd][i] + contact_bone_way(f, s.ground.spacing, &was, &is);
+                       was = k.anew ? sliding_bone_of(f, k.now) : s.all->solid_was[odd][i];
+    s.all->solid_drift[!odd][i] =
+        (k.anew ? 0 : s.all->solid_drift[odd][i]) + contact_bone_way(f, s.ground.spacing, &was, &is);
     s.all->solid_was[!odd][i] = is;
 }
 
@@ -45,6 +46,10 @@ static __device__ void gather(const cuda_touch &k, int odd)
         most = fmax(most, square);
         listed = fmax(listed, way == way ? way : INFINITY);
     });
+    if (k.anew) {
+        for_all(s.c.samples, [&](int64_t i) { s.until[i] = 0; });
+        for_all(s.c.solids * s.c.samples, [&](int64_t i) { s.bone_until[i] = 0; });
+    }
     raise_most(most, &s.all->most[odd]);
     raise_most(listed, &s.all->listed[odd]);
     move_solids(k, odd);
@@ -167,8 +172,11 @@ static __device__ void warp_list(const cuda_skin &s, double side, int64_t i, int
         if (before < CONTACT_CANDIDATES)
             t->candidate[CONTACT_CANDIDATES * i + before] = own;
     }
-    if (lane == 0 && count <= SKIN_LISTED)
+    if (lane == 0 && count <= SKIN_LISTED) {
         t->count[i] = count < CONTACT_CANDIDATES ? count : CONTACT_CANDIDATES;
+        if (count > CONTACT_CANDIDATES)
+            t->crowded[i] = 1;
+    }
     if (lane == 0 && count > SKIN_LISTED)
         contact_list(&s.c, t, side, s.all->large, i);
 }

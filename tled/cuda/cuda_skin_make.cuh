@@ -105,6 +105,7 @@ static void skin_list_room(const self_contact *c, cuda_skin *s, card_layout *l)
     card_layout_add(l, &t->high, 3 * c->elements);
     card_layout_add(l, &t->count, c->elements);
     card_layout_add(l, &t->candidate, CONTACT_CANDIDATES * c->elements);
+    card_layout_add(l, &t->crowded, c->elements);
     card_layout_add(l, &t->cell, c->elements);
     card_layout_add(l, &t->start, t->cells);
     card_layout_add(l, &t->of, c->elements);

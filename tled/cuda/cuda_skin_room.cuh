@@ -96,6 +96,7 @@ typedef struct cuda_touch {
     const double *now, *next; /* the curves' values, at the step's two ends */
     double dt;
     uint32_t launch;
+    bool anew; /* nothing is known from launches before */
 } cuda_touch;
 
 /* ---- of a warp, a block, and all of them */

@@ -103,6 +103,7 @@ struct tled_state {
     char *skin_memory;        /* or NULL: none does */
     int64_t skin_bytes, skin_blocks;
     uint32_t skin_launches;
+    bool skin_is_known; /* from the launch before; else it is found anew */
     int64_t late_tiles; /* the last ones, which have nodes about skin or that slide; 0: all wait for these */
     bool beside_due;    /* these go on beside, and the next pass of the late tiles comes after them: */
     cudaStream_t beside;

@@ -45,7 +45,8 @@ typedef struct tled_executor {
     int (*step)(tled_state *state, const tled_plan *plan, int64_t count, err *e);
     /* Copies a field of the state out, or its internal forces (state.h). */
     int (*get)(tled_state *state, int what, double *to, err *e);
-    /* Saves a copy of the state in place of the one before; and restores it. */
+    /* Saves a copy of the state in place of the one before; and restores it. From either on, steps are those of a state
+     * that is made there. */
     int (*save)(tled_state *state, err *e);
     int (*restore)(tled_state *state, err *e);
     /* Takes over what tled_problem_reload changed. 0; 1: it has no room for it, so the state has to be made again, as
@@ -59,6 +60,9 @@ typedef struct tled_executor {
     int (*monitor)(tled_state *state, const tled_question *question, tled_sums *answer, err *e);
     /* Bytes of the device's memory that the state has by now. */
     int64_t (*bytes)(const tled_state *state);
+    /* How many elements of skin had more beside them, in any step so far, than contact keeps (self_contact_crowded). -1
+     * with e filled. NULL: no skin touches itself there. */
+    int (*crowded)(tled_state *state, int64_t *count, err *e);
     /* How many elements a pass computes, those that are computed twice counted twice, for benchmarks. */
     int64_t (*computed)(const tled_state *state);
 } tled_executor;

@@ -267,12 +267,23 @@ static run_end end_of(const run *n)
                    .parts = INT64_C(1) << n->cuts_told,
                    .rested = n->rested,
                    .remaining = n->course.remaining,
-                   .most_strain = n->course.most_strain};
+                   .most_strain = n->course.most_strain,
+                   .crowded = n->crowded};
     if (n->monitor)
         end.reading = n->monitor->reading;
     if (n->state)
         end.bytes = n->r->device->bytes(n->state);
     return end;
+}
+
+int run_count_crowded(run *n, err *e)
+{
+    const tled_executor *device = n->r->device;
+    int64_t count = 0;
+    if (n->state && device->crowded && device->crowded(n->state, &count, e))
+        return -1;
+    n->crowded = count > n->crowded ? count : n->crowded;
+    return 0;
 }
 
 int run_by(const run_setup *r, const run_live *live, int (*by)(run *n), run_end *end, err *e)
@@ -286,6 +297,8 @@ int run_by(const run_setup *r, const run_live *live, int (*by)(run *n), run_end 
              .e = e};
     n.course.from = n.course.closest_at = n.plan.first;
     int result = prepare(&n) ? -1 : by(&n);
+    if (run_count_crowded(&n, result ? &(err){0} : e)) /* the first error is the one that is told */
+        result = -1;
     *end = end_of(&n);
     if (frame_writer_close(n.writer, e)) /* what is sound is written whatever happened then */
         result = -1;

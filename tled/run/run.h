@@ -113,6 +113,7 @@ typedef struct run_end {
     /* However it ended: */
     double most_strain; /* J: at a check */
     int64_t bytes;      /* of the device's memory, in the end */
+    int64_t crowded;    /* tled_executor's: the most of any state that it had */
 } run_end;
 
 /* Runs live, by ticks of the wall's clock, until the caller ends it or the last step is taken: a frame a tick, sent as

@@ -58,7 +58,7 @@ static int make_again(run *n, again from)
     }
     n->writer = NULL;
     n->sent = 0;
-    if (find_start(n, from))
+    if (find_start(n, from) || run_count_crowded(n, n->e))
         return -1;
     p->start = run_now(n);
     r->device->destroy(n->state);

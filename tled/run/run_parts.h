@@ -15,6 +15,7 @@ typedef struct run {
     int went_back;        /* live: since the last sound check: to the one before, then to the beginning */
     field_values began;   /* live: the state that it began from; at rest when it is gone back to */
     int restored;         /* live: in this tick */
+    int64_t crowded;      /* run_end's, of the states so far */
     tled_state *state;
     monitor *monitor;
     run_course course;
@@ -72,6 +73,9 @@ int run_log_sound(run *n);
 /* Saves the state that was monitored last, to go back to; and goes back. */
 int run_save(run *n);
 int run_restore(run *n);
+
+/* Counts what the state has of crowded elements (run_end). -1 with e filled. */
+int run_count_crowded(run *n, err *e);
 
 /* Live: as few parts as a step may safely be taken in, from the state that was monitored last. */
 void run_choose_parts(run *n);

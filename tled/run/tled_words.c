@@ -76,6 +76,11 @@ void words_folds(session *s, const run_end *end, bool ended)
     folds_text(&s->folds, ended, folded);
     tool_say(s->t, "%s", folded);
     folds_warn(&s->folds, ended, end->most_strain, &s->warnings);
+    if (end->crowded)
+        notes_add(&s->warnings,
+                  "%lld elements of skin had more than %d other elements near them during the run; contact with the "
+                  "others was left out; expected skin that is crushed less, or less skin (bind --self-contact)",
+                  (long long)end->crowded, SELF_CONTACT_BESIDE);
     if (s->beyond)
         notes_add(&s->warnings,
                   "%lld nodes slid beyond the distance field of their bone, which goes on there as at its border; "
