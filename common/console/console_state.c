@@ -59,7 +59,8 @@ static void put_tool(const console *c, out *to)
     out_text(to, ",\"tool\":{\"name\":");
     json_text(tool_name(c), to);
     put_text("method", c->face ? NULL : c->method, to);
-    out_text(to, c->face ? ",\"methods\":[]" : ",\"methods\":[\"msds\",\"fem\",\"exact\",\"warp\",\"exact-warp\"]");
+    out_text(to, c->face ? ",\"methods\":[]"
+                         : ",\"methods\":[\"msds\",\"fem\",\"exact\",\"warp\",\"exact-warp\",\"tissue\"]");
     put_key("settings", to);
     dials_put(&c->dials, to);
     out_text(to, "}");

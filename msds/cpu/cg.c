@@ -58,7 +58,8 @@ static double sum_of(const cg *g)
 int cg_make(cg *g, const msds_problem *p, const sell *s, stiffness *k, contacts *c, const lanes *loops, pool *threads,
             lanes_field *u, lanes_field *weight, err *e)
 {
-    *g = (cg){.p = p, .s = s, .k = k, .c = c, .loops = loops, .threads = threads, .u = u, .weight = weight};
+    *g = (cg){
+        .p = p, .s = s, .k = k, .pressed = {p, s, c}, .loops = loops, .threads = threads, .u = u, .weight = weight};
     g->matrix.s = s;
     g->matrix.diagonal = mem_array(s->count, 9 * LANES * sizeof(float), "the solver", e);
     g->matrix.block = mem_array(s->slots, 9 * LANES * sizeof(float), "the solver", e);
@@ -114,26 +115,6 @@ static void find_pulled(cg *g, bool again)
             g->pulled.x[a][s->own_node[n]] = g->p->fixed[n] ? 0 : (float)g->force[3 * n + a];
 }
 
-static double along(const lanes_field *f, int32_t own, const contact *c)
-{
-    return c->way[0] * (double)f->x[0][own] + c->way[1] * (double)f->x[1][own] + c->way[2] * (double)f->x[2][own];
-}
-
-static void add_along(lanes_field *f, int32_t own, const contact *c, double amount)
-{
-    for (int a = 0; a < 3; a++)
-        f->x[a][own] += (float)(amount * c->way[a]);
-}
-
-/* Prescribed: takes out of f what it has along the directions of contact. */
-static void keep_out(const cg *g, lanes_field *f)
-{
-    for (int64_t i = 0; i < g->c->count && !g->p->options.penalty; i++) {
-        int32_t own = g->s->own_node[g->c->list[i].node];
-        add_along(f, own, &g->c->list[i], -along(f, own, &g->c->list[i]));
-    }
-}
-
 /* left = gravity - pulled; fixed nodes: 0. Returns the square of its norm. */
 static double find_left(cg *g, double *load)
 {
@@ -170,59 +151,13 @@ static void turn_work(void *context, int64_t chunk, int64_t from, int64_t to)
     g->loops->turn(&g->way, &g->left, g->beta, from, to);
 }
 
-/* pulled += the penalty's stiffness times way. Returns what that adds to way . pulled. */
-static double add_penalty(cg *g)
-{
-    double sum = 0;
-    for (int64_t i = 0; i < g->c->count && g->p->options.penalty; i++) {
-        int32_t own = g->s->own_node[g->c->list[i].node];
-        double by = along(&g->way, own, &g->c->list[i]);
-        add_along(&g->pulled, own, &g->c->list[i], g->p->repulsion[g->c->list[i].node] * by);
-        sum += g->p->repulsion[g->c->list[i].node] * by * by;
-    }
-    return sum;
-}
-
-/* What contact does before the search: moves the nodes, or pushes them. */
-static void touch(cg *g)
-{
-    for (int64_t i = 0; i < g->c->count && !g->p->options.penalty; i++)
-        add_along(g->u, g->s->own_node[g->c->list[i].node], &g->c->list[i], g->c->list[i].depth);
-}
-
-static void push(cg *g)
-{
-    for (int64_t i = 0; i < g->c->count && g->p->options.penalty; i++)
-        add_along(&g->left, g->s->own_node[g->c->list[i].node], &g->c->list[i],
-                  g->p->repulsion[g->c->list[i].node] * g->c->list[i].depth);
-}
-
-/* The depth that is left after the search. */
-static double depth_now(const cg *g, const contact *c)
-{
-    int32_t own = g->s->own_node[c->node];
-    double gone = 0;
-    for (int a = 0; a < 3; a++)
-        gone += c->way[a] * ((double)g->u->x[a][own] - c->from[a]);
-    return c->depth - gone;
-}
-
 /* The forces of contact, and what is left then, over the load. */
 static void conclude(cg *g)
 {
     double load, square;
     find_pulled(g, false);
     square = find_left(g, &load);
-    for (int64_t i = 0; i < g->c->count; i++) {
-        contact *c = &g->c->list[i];
-        int32_t own = g->s->own_node[c->node];
-        c->force = g->p->options.penalty ? g->p->repulsion[c->node] * depth_now(g, c) : -along(&g->left, own, c);
-        for (int a = 0; a < 3; a++) {
-            double left = (double)g->left.x[a][own], weight = (double)g->weight->x[a][own], by = c->force * c->way[a];
-            square += (left + by) * (left + by) - left * left;
-            load += (weight + by) * (weight + by) - weight * weight;
-        }
-    }
+    pressed_forces(&g->pressed, g->u, &g->left, g->weight, &square, &load);
     load = fmax(fmax(load, g->pull), g->p->slight);
     g->residual = load > 0 ? sqrt(fmax(0, square) / load) : 0;
 }
@@ -230,11 +165,11 @@ static void conclude(cg *g)
 void cg_solve(cg *g, int64_t iterations)
 {
     double load, squared, next;
-    touch(g);
+    pressed_move(&g->pressed, g->u);
     find_pulled(g, true);
     find_left(g, &load);
-    push(g);
-    keep_out(g, &g->left);
+    pressed_push(&g->pressed, g->u, &g->left);
+    pressed_keep_out(&g->pressed, &g->left);
     memset(g->way.memory, 0, 3 * (size_t)(g->s->nodes + 2 * LANES) * sizeof *g->way.memory);
     g->alpha = g->beta = 0;
     memset(g->pulled.memory, 0, 3 * (size_t)(g->s->nodes + 2 * LANES) * sizeof *g->pulled.memory);
@@ -243,10 +178,10 @@ void cg_solve(cg *g, int64_t iterations)
     for (int64_t i = 0; i < iterations && squared > 0; i++) {
         run(g, turn_work);
         run(g, multiply_work);
-        double curvature = sum_of(g) + add_penalty(g);
+        double curvature = sum_of(g) + pressed_stiffen(&g->pressed, &g->way, &g->pulled);
         if (!(curvature > 0))
             break;
-        keep_out(g, &g->pulled);
+        pressed_keep_out(&g->pressed, &g->pulled);
         g->alpha = (float)(squared / curvature);
         run(g, advance_work);
         next = sum_of(g);

@@ -5,7 +5,7 @@
 #ifndef SINEW_CG_H
 #define SINEW_CG_H
 
-#include "msds/cpu/contacts.h"
+#include "msds/cpu/pressed.h"
 #include "msds/problem/stiffness.h"
 
 typedef struct cg {
@@ -14,7 +14,7 @@ typedef struct cg {
     const sell *s;
     pool *threads;
     stiffness *k;
-    contacts *c;
+    pressed pressed;
     lanes_matrix matrix;
     lanes_field *u, *weight; /* the state's: m, N */
     lanes_field left, way, pulled;

@@ -6,6 +6,7 @@
 #ifndef SINEW_LANES_H
 #define SINEW_LANES_H
 
+#include "msds/cpu/tissue_mesh.h"
 #include "msds/problem/sell.h"
 #include "solve/vectors.h"
 
@@ -59,6 +60,24 @@ typedef struct lanes {
     void (*forward)(double *y, const float *l, int64_t stride, int64_t rows, int64_t columns, const double *x);
     /* x (columns) -= the transpose of l times y (rows). */
     void (*backward)(double *x, const float *l, int64_t stride, int64_t rows, int64_t columns, const double *y);
+    /* Groups [from, to): m->g and m->swollen at u. */
+    void (*tissue_measure)(const tissue_mesh *m, const lanes_field *u, int64_t from, int64_t to);
+    /* Groups: m->force, of m->g and m->pressure. */
+    void (*tissue_stress)(const tissue_mesh *m, int64_t from, int64_t to);
+    /* Groups: what m->swollen changes by along a way from m->g. */
+    void (*tissue_swell)(const tissue_mesh *m, const lanes_field *way, int64_t from, int64_t to);
+    /* Groups: what m->force changes by, where m->pressure changes by m->pressed. */
+    void (*tissue_tangent)(const tissue_mesh *m, const lanes_field *way, int64_t from, int64_t to);
+    /* Slices of points: m->bulk times the sums of m->swollen, to value; to m->pressure with m->held. */
+    void (*tissue_points)(const tissue_mesh *m, float *value, int64_t from, int64_t to);
+    /* Slices of nodes: the sums of m->force to y, 0 at Dirichlet nodes; returns way . y; way NULL: 0. */
+    double (*tissue_gather)(const tissue_mesh *m, const lanes_field *way, lanes_field *y, int64_t from, int64_t to);
+    /* d += alpha way; r -= alpha y; returns r . r m->inverse. */
+    double (*tissue_advance)(const tissue_mesh *m, lanes_field *d, lanes_field *r, const lanes_field *way,
+                             const lanes_field *y, float alpha, int64_t from, int64_t to);
+    /* way = m->inverse r + beta way. */
+    void (*tissue_turn)(const tissue_mesh *m, lanes_field *way, const lanes_field *r, float beta, int64_t from,
+                        int64_t to);
 } lanes;
 
 #define LANES_DECLARE(set, name, bytes, has) extern const lanes lanes_##set;

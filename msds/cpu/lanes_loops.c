@@ -420,6 +420,8 @@ static void backward(double *x, const float *l, int64_t stride, int64_t rows, in
     }
 }
 
+#include "msds/cpu/tissue_loops.h"
+
 const lanes VECTORS_OF(lanes_) = {.name = VECTORS_NAME,
                                   .step = step,
                                   .multiply = multiply,
@@ -428,4 +430,12 @@ const lanes VECTORS_OF(lanes_) = {.name = VECTORS_NAME,
                                   .inside = inside,
                                   .update = update,
                                   .forward = forward,
-                                  .backward = backward};
+                                  .backward = backward,
+                                  .tissue_measure = tissue_measure,
+                                  .tissue_stress = tissue_stress,
+                                  .tissue_swell = tissue_swell,
+                                  .tissue_tangent = tissue_tangent,
+                                  .tissue_points = tissue_points,
+                                  .tissue_gather = tissue_gather,
+                                  .tissue_advance = tissue_advance,
+                                  .tissue_turn = tissue_turn};

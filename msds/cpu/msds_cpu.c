@@ -8,6 +8,7 @@
 #include "msds/cpu/cg.h"
 #include "msds/cpu/exact.h"
 #include "msds/cpu/exact_making.h"
+#include "msds/cpu/tissue.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -40,8 +41,9 @@ struct msds_state {
     float *inverse;                   /* nodes: dt / inertia; of w */
     float *repulsion;                 /* nodes: of w */
     contacts contacts;
-    fem fem[2];    /* of linear elements, and of warped ones */
-    double *place; /* the model's nodes x 3, m: where exact frames stand */
+    fem fem[2];     /* of linear elements, and of warped ones */
+    tissue *tissue; /* made when it is first wanted */
+    double *place;  /* the model's nodes x 3, m: where exact frames stand */
     msds_plan plan;
     bool precise; /* place is the state; else w.u */
     bool met;     /* as the reading's */
@@ -124,6 +126,9 @@ static void cpu_destroy(cpu_state *s)
         return;
     for (int warped = 0; warped < 2; warped++)
         fem_free(&s->fem[warped]);
+    if (s->tissue)
+        tissue_free(s->tissue);
+    free(s->tissue);
     contacts_free(&s->contacts);
     lanes_field *fields[FIELDS] = {&s->w.place, &s->w.u, &s->w.v, &s->w.next_u, &s->w.next_v, &s->w.weight};
     for (int i = 0; i < FIELDS; i++)
@@ -282,21 +287,52 @@ static void find_contacts(cpu_state *s, const double *u, contacts_rule rule)
         contacts_find(&s->contacts, s->loops, &s->w, s->p, u, s->threads, rule);
 }
 
-static int step_cg(cpu_state *s, int64_t count, err *e)
+/* Contacts are found where the tissue is; those that let go, of which the tissue may come after the probe, halfway
+ * again. */
+static void step_iterations(cpu_state *s, void (*solve)(void *solver, int64_t iterations), void *solver, int64_t count)
 {
     double force[3];
-    if (!fem_of(s)->cg && make_cg(s, s->plan.warp, e))
-        return -1;
-    cg *solver = fem_of(s)->cg;
-    int64_t pressed = contacts_held(&s->contacts, s->p);
+    const int64_t before = contacts_held(&s->contacts, s->p);
     find_contacts(s, NULL, CONTACTS_PRESSED);
-    if (contacts_sum(&s->contacts, force) < pressed && count > 1) { /* let go of: tissue may come after the probe */
-        cg_solve(solver, count / 2);
+    if (contacts_sum(&s->contacts, force) < before && count > 1) {
+        solve(solver, count / 2);
         contacts_hold(&s->contacts, s->p);
         find_contacts(s, NULL, CONTACTS_PRESSED);
         count -= count / 2;
     }
-    cg_solve(solver, count);
+    solve(solver, count);
+}
+
+static void solve_cg(void *solver, int64_t iterations)
+{
+    cg_solve(solver, iterations);
+}
+
+static int step_cg(cpu_state *s, int64_t count, err *e)
+{
+    if (!fem_of(s)->cg && make_cg(s, s->plan.warp, e))
+        return -1;
+    step_iterations(s, solve_cg, fem_of(s)->cg, count);
+    return 0;
+}
+
+static void solve_tissue(void *solver, int64_t iterations)
+{
+    tissue_solve(solver, iterations);
+}
+
+static int make_tissue(cpu_state *s, err *e)
+{
+    tissue *made = mem_array(1, sizeof *made, "the solver", e);
+    s->tissue = made;
+    return made ? tissue_make(made, s->p, &s->order, &s->contacts, s->loops, s->threads, &s->w.u, &s->w.weight, e) : -1;
+}
+
+static int step_tissue(cpu_state *s, int64_t count, err *e)
+{
+    if (!s->tissue && make_tissue(s, e))
+        return -1;
+    step_iterations(s, solve_tissue, s->tissue, count);
     return 0;
 }
 
@@ -329,6 +365,13 @@ static void clear_field(const cpu_state *s, lanes_field *f)
     memset(f->memory, 0, 3 * (size_t)(s->order.nodes + 2 * LANES) * sizeof *f->memory);
 }
 
+static int step_elements(cpu_state *s, int64_t count, err *e)
+{
+    if (s->plan.method == MSDS_FEM)
+        return step_cg(s, count, e);
+    return s->plan.method == MSDS_TISSUE ? step_tissue(s, count, e) : step_exact(s, e);
+}
+
 static int cpu_step(cpu_state *s, const msds_plan *plan, int64_t count, err *e)
 {
     int result = 0;
@@ -338,7 +381,7 @@ static int cpu_step(cpu_state *s, const msds_plan *plan, int64_t count, err *e)
         step_springs(s, count);
         note_repulsion(s);
     } else {
-        result = s->plan.method == MSDS_FEM ? step_cg(s, count, e) : step_exact(s, e);
+        result = step_elements(s, count, e);
         clear_field(s, &s->w.v);
     }
     s->precise = s->plan.method == MSDS_EXACT;
@@ -359,6 +402,8 @@ static int cpu_reset(cpu_state *s, err *e)
     s->precise = true;
     s->solves = 0;
     fem_clear(&s->fem[true]);
+    if (s->tissue)
+        tissue_reset(s->tissue);
     return 0;
 }
 
@@ -367,6 +412,8 @@ static int cpu_ready(cpu_state *s, const msds_plan *plan, err *e)
 {
     fem *f = &s->fem[plan->warp];
     const int threads = pool_threads(s->threads) / 2;
+    if (plan->method == MSDS_TISSUE && !s->tissue)
+        return make_tissue(s, e) ? -1 : 1;
     if (plan->method != MSDS_EXACT || f->exact)
         return 1;
     if (!f->making)
@@ -399,6 +446,8 @@ static int cpu_monitor(cpu_state *s, msds_reading *reading, err *e)
         reading->residual = f->cg->residual;
     if (s->plan.method == MSDS_EXACT && f->exact)
         reading->residual = f->exact->residual;
+    if (s->plan.method == MSDS_TISSUE && s->tissue)
+        reading->residual = s->tissue->residual;
     for (int64_t own = 0; own < s->order.nodes; own++) {
         double x = (double)s->w.u.x[0][own], y = (double)s->w.u.x[1][own], z = (double)s->w.u.x[2][own];
         double here = x * x + y * y + z * z;
@@ -419,7 +468,7 @@ static int64_t cpu_bytes(const cpu_state *s)
         if (f->exact)
             bytes += matrix + f->exact->factor.numbers * 4 + f->exact->room * 4;
     }
-    return bytes;
+    return bytes + (s->tissue ? tissue_bytes(s->tissue) : 0);
 }
 
 static const char *cpu_unusable(void)
@@ -434,7 +483,7 @@ void msds_cpu_touch(msds_state *s, const msds_plan *plan)
 }
 
 const msds_executor msds_cpu = {
-    .is = {.device = "cpu", .features = EXECUTOR_CONTACT | EXECUTOR_WARP, .unusable = cpu_unusable},
+    .is = {.device = "cpu", .features = EXECUTOR_CONTACT | EXECUTOR_WARP | EXECUTOR_TISSUE, .unusable = cpu_unusable},
     .create = cpu_create,
     .destroy = cpu_destroy,
     .step = cpu_step,

@@ -345,6 +345,8 @@ static int cuda_step(cuda_state *s, const msds_plan *p, int64_t count, err *e)
 {
     if (p->warp && p->method != MSDS_SPRINGS)
         return err_set(e, NULL, 0, "--warp is not done on a card; expected -d cpu");
+    if (p->method == MSDS_TISSUE)
+        return err_set(e, NULL, 0, "the method tissue is not done on a card; expected -d cpu");
     if (p->touched && card_planes_put(&s->planes, &p->probe.shape, s->stream, s->step, e))
         return -1;
     const tissue_frame f = frame_of(s, p, count);

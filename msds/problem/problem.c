@@ -175,6 +175,7 @@ static int make_materials(msds_problem *p, const model *m, err *e)
     for (int64_t i = 0; !result && i < table->rows; i++)
         result = read_material(m, i, &list[i], e);
     result = result ? result : material_elements_check(m, list, e);
+    p->volume = of ? of->i32 : NULL;
     for (int64_t t = 0; !result && t < p->elements; t++)
         result = take_element(p, &share, t, of->i32[t], list, m->stream, e);
     free(list);

@@ -11,7 +11,7 @@
 #include "msds/problem/simplex.h"
 #include "probe/probe.h"
 
-typedef enum msds_method { MSDS_SPRINGS, MSDS_FEM, MSDS_EXACT } msds_method;
+typedef enum msds_method { MSDS_SPRINGS, MSDS_FEM, MSDS_EXACT, MSDS_TISSUE } msds_method;
 
 typedef struct msds_spring {
     int32_t node[2];                /* ascending */
@@ -31,6 +31,7 @@ typedef struct msds_problem {
     int64_t nodes, elements, springs;
     const double *position;      /* nodes x 3, m */
     const int32_t *element_node; /* elements x 4 */
+    const int32_t *volume;       /* elements: the model's volume that each is of */
     simplex *element;            /* elements; owned, as is all below */
     double *young;               /* elements, Pa */
     uint8_t *fixed;              /* nodes */

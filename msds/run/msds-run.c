@@ -1,5 +1,5 @@
 /* msds-run: presses a probe on a tetrahedral model, pose by pose, and writes a frame for each as soon as it is solved:
- * by springs and dampers or by linear finite elements. PST sections III and the appendix.
+ * by springs and dampers or by finite elements. PST sections III and the appendix.
  */
 #include "live/stop.h"
 #include "msds/run/frame_report.h"

@@ -7,7 +7,7 @@ static const opt option_list[] = {
     {OPT_NUMERICS, 'd', "device", "auto|cuda|cpu", OPT_CHOICE, TO(device), 0, 0, "auto|cuda|cpu", OPT_OUTPUT,
      "auto takes a CUDA card that works [default auto]"},
     {OPT_NUMERICS, 0, "method", METHODS_CHOICES, OPT_CHOICE, TO(method), 0, 0, METHODS_CHOICES, OPT_OUTPUT,
-     "springs, or finite elements: a way to solve them [default msds]"},
+     "springs, linear finite elements, or large strains [default msds]"},
     {OPT_NUMERICS, 0, "exact", NULL, OPT_FLAG, TO(exact), 0, 0, NULL, 0,
      "fem: solve to a relative residual of 1e-6, as --method exact"},
     {OPT_NUMERICS, 0, "warp", NULL, OPT_FLAG, TO(warp), 0, 0, NULL, 0,
@@ -25,7 +25,7 @@ static const opt option_list[] = {
     {OPT_INPUT, 0, "replay", "FILE", OPT_TEXT, TO(replay), 0, 0, NULL, OPT_OUTPUT | OPT_FILE,
      "make the frames of a record again"},
     {OPT_NUMERICS, 0, "iterations", "N", OPT_INT, TO(iterations), 1, 1e6, NULL, OPT_OUTPUT,
-     "time steps (msds) or conjugate-gradient iterations (fem) in 1/60 s of the poses [default 20]"},
+     "time steps (msds) or conjugate-gradient iterations in 1/60 s of the poses [default 20]"},
     {OPT_NUMERICS, 0, "rate", "HZ", OPT_NUMBER, TO(rate), 0, 1e6, NULL, OPT_OUTPUT,
      "--iterations are for 1/HZ s; 0: for each frame [Hz; default 60]"},
     {OPT_NUMERICS, 0, "dt", "S", OPT_NUMBER, TO(dt), 1e-9, 1e3, NULL, OPT_OUTPUT,
@@ -64,7 +64,7 @@ static const opt option_list[] = {
 const opt_tool run_options_table = {
     .name = "msds-run",
     .usage = "--poses FILE [options] < model > result",
-    .purpose = "Presses an ultrasound probe on a model of tetrahedra, by springs and dampers or\nby linear finite "
+    .purpose = "Presses an ultrasound probe on a model of tetrahedra, by springs and dampers or\nby finite "
                "elements, and adds a frame of results for each pose.",
     .note = "Lengths are in m, unless they have a suffix (" NUM_UNITS_LIST "), e.g. 5cm.",
     .example = "msds-run --probe linear:4cm,1cm --poses press.tum < arm.sinew > out.sinew",

@@ -191,8 +191,10 @@ static int choose_device(session *s, err *e)
 {
     static const char *const names[] = {"auto", "cuda", "cpu"};
     const struct options *o = s->o;
-    const bool warps = o->warp || methods_warps((method_word)o->method);
-    const executor_need need = {.features = warps && !o->device ? EXECUTOR_WARP : 0}; /* -d cuda: where FEM begins */
+    const method_word method = (method_word)o->method;
+    const uint32_t later = o->warp && method == METHOD_MSDS ? EXECUTOR_WARP : 0; /* where FEM begins */
+    const executor_need need = {.features = methods_features(methods_with(method, o->exact, o->warp)) |
+                                            (o->device ? 0 : later)};
     char device[300];
     s->device = msds_executor_of(executor_choose(msds_executors, names[o->device], &need, device, sizeof device, e));
     int threads = tool_threads(s->t, e);

@@ -113,7 +113,7 @@ static int take_method(session *s, const keyfile *k, err *e)
     if (method < 0)
         return near_unknown(e, k->name, k->line, "method", k->word[1], methods_words, METHOD_WORDS);
     const method_word to = methods_with((method_word)method, s->o->exact, s->o->warp);
-    if (methods_warps(to) && !(s->device->is.features & EXECUTOR_WARP))
+    if (methods_features(to) & ~s->device->is.features)
         return keyfile_error(k, e, "method %s is not done on a card; expected -d cpu", methods_words[to]);
     session_method(s, (method_word)method);
     tool_detail(s->t, "line %lld: the method is %s from here on", (long long)k->line, k->word[1]);

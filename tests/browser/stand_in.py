@@ -186,7 +186,7 @@ class Arm:
         return [x - .02 + step[0] / 2, y, z - step[1] / 2, step[0], 0, 0, 0, 0, -step[1]]
 
     def state(self):
-        return {"tool": {"name": "msds-run", "method": self.method, "methods": ["msds", "fem", "exact", "warp", "exact-warp"], "settings": self.settings},
+        return {"tool": {"name": "msds-run", "method": self.method, "methods": ["msds", "fem", "exact", "warp", "exact-warp", "tissue"], "settings": self.settings},
                 "image": {"settings": self.image}, "probe": {"shape": self.shape, "pose": self.pose}, "device": "cpu, 2 threads"}
 
     def take(self, verb, words):

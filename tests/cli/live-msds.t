@@ -99,7 +99,7 @@ more 2
 for line in 'set gravity much' 'set colour red' 'method wrap' 'pull 1 0,0,0 1 0,0,0 1' 'set' 'set dt' 'set iterations 0'; do
     echo "$line" >&4
 done
-for method in fem exact warp exact-warp msds; do
+for method in fem exact warp exact-warp tissue msds; do
     echo "method $method" >&4
     wait_path "$method"
     more 2
@@ -120,8 +120,8 @@ is "$(frames "$T/live")" "$(frames "$T/record")" "a line for each frame"
 is "$(grep -c 'skipped, and others like it are' "$T/said")" "$(grep -c 'warning: .*\(poses\|lines\):[0-9]*: .*; the line is skipped' "$T/said")" \
     "what is wrong is told with its line"
 is "$(sed -n 's/.*; \([0-9]* controls; [0-9]* lines skipped; writers went away: [0-9]*\)$/\1/p' "$T/said")" \
-    "7 controls; 14 lines skipped; writers went away: 3" "and counted"
-is "$(sed -n 's/^frame.*path=//p' "$T/record" | uniq | tr '\n' ' ')" "msds fem exact warp exact-warp msds " "each method was used"
+    "8 controls; 14 lines skipped; writers went away: 3" "and counted"
+is "$(sed -n 's/^frame.*path=//p' "$T/record" | uniq | tr '\n' ' ')" "msds fem exact warp exact-warp tissue msds " "each method was used"
 is "$(awk '/^set probe/ { print $3 }' "$T/record" | tr '\n' ' ')" "sphere:2cm linear:3cm,1cm " "settings are recorded"
 cp "$T/record" "$T/kept"
 same "a session" --probe sphere:2cm

@@ -91,9 +91,9 @@ for method in 'exact:fem --exact' 'warp:fem --warp' 'exact-warp:fem --exact --wa
     is "$(frames "$T/flags.sinew" | cksum) $(frames "$T/line.sinew" | cksum)" "$(frames "$T/named.sinew" | cksum) $(frames "$T/named.sinew" | cksum)" "${method%%:*} is ${method#*:}"
 done
 is "$(frames "$T/named.sinew" | grep -c '^frame ')" 4 "of four frames each"
-{ cat "$T/four.tum"; echo 'method warp'; cat "$T/fifth.tum"; echo 'method exact-warp'; cat "$T/fifth.tum"; echo 'method fem'; cat "$T/fifth.tum"; echo 'method exact'; cat "$T/fifth.tum"; } >"$T/all.tum"
+{ cat "$T/four.tum"; echo 'method warp'; cat "$T/fifth.tum"; echo 'method exact-warp'; cat "$T/fifth.tum"; echo 'method fem'; cat "$T/fifth.tum"; echo 'method tissue'; cat "$T/fifth.tum"; echo 'method exact'; cat "$T/fifth.tum"; } >"$T/all.tum"
 check "all methods in one run" msds-run -v --probe sphere:2cm --poses "$T/all.tum" -o "$T/all.sinew" <"$T/block.sinew"
-is "$(awk '/time\/s/ { on = 1; next } on && NF == 7 { printf "%s ", $3 }' "$T/stderr")" "msds msds msds msds warp exact-warp fem fem-exact " "each frame by its own"
+is "$(awk '/time\/s/ { on = 1; next } on && NF == 7 { printf "%s ", $3 }' "$T/stderr")" "msds msds msds msds warp exact-warp fem tissue fem-exact " "each frame by its own"
 echo 'method wrap' >"$T/wrap.tum"
 fails 1 "a method that is none" "wrap.tum:1: unknown method 'wrap'; did you mean 'warp'\?" msds-run --poses "$T/wrap.tum" <"$T/block.sinew"
 

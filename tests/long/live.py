@@ -22,7 +22,7 @@ from timely import RATE, Metronome, counted, diag, ok, timely
 
 bin, seconds, sessions = os.path.abspath(sys.argv[1]), float(sys.argv[2]), int(sys.argv[3])
 root = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
-METHODS = "msds", "fem", "exact", "warp", "exact-warp"
+METHODS = "msds", "fem", "exact", "warp", "exact-warp", "tissue"
 ON_CARD = "msds", "fem", "exact"
 
 # ---- What is sent: lines at 60 a second into a FIFO, with all that goes wrong.

@@ -6,6 +6,7 @@
 // needs: msds/cpu/lanes_loops.c msds/cpu/contacts.c
 // needs: msds/problem/stiffness.c msds/cpu/dissect.c msds/cpu/factor.c msds/cpu/exact.c msds/cpu/mixing.c msds/cpu/cg.c
 // needs: msds/cpu/exact_making.c msds/cpu/msds_cpu.c msds/run/msds_executors.c msds/problem/largest.c
+// needs: msds/cpu/tissue.c msds/cpu/tissue_mesh.c
 // needs: msds/run/press.c
 #include "msds_block.h"
 
@@ -260,13 +261,14 @@ static void test_pace(void)
 int main(void)
 {
     test_pace();
-    static const msds_method methods[] = {MSDS_SPRINGS, MSDS_FEM, MSDS_EXACT};
+    static const msds_method methods[] = {MSDS_SPRINGS, MSDS_FEM, MSDS_EXACT, MSDS_TISSUE};
     for (const executor *const *at = msds_executors; *at; at++) {
         const msds_executor *device = msds_executor_of(*at);
         if ((*at)->unusable())
             continue;
         for (int warp = 0; warp <= ((*at)->features & EXECUTOR_WARP ? 1 : 0); warp++) {
-            for (int i = warp; i < 3; i++) {
+            const int count = !warp && (*at)->features & EXECUTOR_TISSUE ? 4 : 3;
+            for (int i = warp; i < count; i++) {
                 test_change(device, methods[i], warp);
                 test_reset(device, methods[i], warp);
             }

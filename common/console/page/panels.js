@@ -9,6 +9,7 @@ const METHODS = {
     exact: "finite elements, exact",
     warp: "corotational, iterated",
     "exact-warp": "corotational, exact",
+    tissue: "large strains, iterated",
 };
 const SAID = 200;     // messages that are kept
 const SHOWN = 12000;  // ms: a warning; an error stays until it is dismissed

@@ -1,0 +1,97 @@
+/* What iterative solvers of finite elements do with the nodes that a probe presses (contacts.h), for cg.c and tissue.c:
+ * fields are in the solver's order. Prescribed contact moves a node along its way, and keeps the search out of that;
+ * a penalty stiffens it. Owns nothing.
+ */
+#ifndef SINEW_PRESSED_H
+#define SINEW_PRESSED_H
+
+#include "msds/cpu/contacts.h"
+
+typedef struct pressed {
+    const msds_problem *p;
+    const sell *s;
+    contacts *c;
+} pressed;
+
+static inline double pressed_along(const lanes_field *f, int32_t own, const contact *c)
+{
+    return c->way[0] * (double)f->x[0][own] + c->way[1] * (double)f->x[1][own] + c->way[2] * (double)f->x[2][own];
+}
+
+static inline void pressed_add(lanes_field *f, int32_t own, const contact *c, double amount)
+{
+    for (int a = 0; a < 3; a++)
+        f->x[a][own] += (float)(amount * c->way[a]);
+}
+
+/* Prescribed: moves nodes in f by what they have to go; returns how many. */
+static inline int64_t pressed_move(const pressed *k, lanes_field *f)
+{
+    if (k->p->options.penalty)
+        return 0;
+    for (int64_t i = 0; i < k->c->count; i++)
+        pressed_add(f, k->s->own_node[k->c->list[i].node], &k->c->list[i], k->c->list[i].depth);
+    return k->c->count;
+}
+
+/* Prescribed: takes out of f what it has along the ways. */
+static inline void pressed_keep_out(const pressed *k, lanes_field *f)
+{
+    for (int64_t i = 0; i < k->c->count && !k->p->options.penalty; i++) {
+        const int32_t own = k->s->own_node[k->c->list[i].node];
+        pressed_add(f, own, &k->c->list[i], -pressed_along(f, own, &k->c->list[i]));
+    }
+}
+
+/* Penalty: adds its stiffness times `way` to `pulled`. Returns what that adds to way . pulled. */
+static inline double pressed_stiffen(const pressed *k, const lanes_field *way, lanes_field *pulled)
+{
+    double sum = 0;
+    for (int64_t i = 0; i < k->c->count && k->p->options.penalty; i++) {
+        const contact *c = &k->c->list[i];
+        const int32_t own = k->s->own_node[c->node];
+        const double by = pressed_along(way, own, c);
+        pressed_add(pulled, own, c, k->p->repulsion[c->node] * by);
+        sum += k->p->repulsion[c->node] * by * by;
+    }
+    return sum;
+}
+
+/* How deep a node still is, at u. */
+static inline double pressed_depth(const pressed *k, const contact *c, const lanes_field *u)
+{
+    const int32_t own = k->s->own_node[c->node];
+    double gone = 0;
+    for (int a = 0; a < 3; a++)
+        gone += c->way[a] * ((double)u->x[a][own] - c->from[a]);
+    return c->depth - gone;
+}
+
+/* Penalty: adds the forces at u to f. */
+static inline void pressed_push(const pressed *k, const lanes_field *u, lanes_field *f)
+{
+    for (int64_t i = 0; i < k->c->count && k->p->options.penalty; i++) {
+        const contact *c = &k->c->list[i];
+        pressed_add(f, k->s->own_node[c->node], c, k->p->repulsion[c->node] * pressed_depth(k, c, u));
+    }
+}
+
+/* The forces of contact at u, where `left` is gravity less what the elements pull with. Adds what they change the
+ * squares of |left| and of |weight| by. */
+static inline void pressed_forces(const pressed *k, const lanes_field *u, const lanes_field *left,
+                                  const lanes_field *weight, double *square, double *load)
+{
+    for (int64_t i = 0; i < k->c->count; i++) {
+        contact *c = &k->c->list[i];
+        const int32_t own = k->s->own_node[c->node];
+        c->force =
+            k->p->options.penalty ? k->p->repulsion[c->node] * pressed_depth(k, c, u) : -pressed_along(left, own, c);
+        for (int a = 0; a < 3; a++) {
+            const double rest = (double)left->x[a][own], heavy = (double)weight->x[a][own], by = c->force * c->way[a];
+            *square += (rest + by) * (rest + by) - rest * rest;
+            *load += (heavy + by) * (heavy + by) - heavy * heavy;
+        }
+    }
+}
+
+#endif

@@ -1,0 +1,44 @@
+/* Newton's method with conjugate gradients on stable neo-Hookean tetrahedra (msds/problem/stable.h): so many conjugate
+ * gradients a frame, from the frame before, in single precision, by products with the tangent that no matrix stores
+ * (tissue_mesh.h). Nodes that a probe has to move by prescribed displacements are moved along with the step, so that a
+ * long way turns no element inside out that Newton's line search can spare.
+ *
+ * Of a tissue that hardly changes its volume, points have a bulk modulus k' of 20 mu at most, and the rest by a
+ * pressure that is held from frame to frame (a proximal point method for the dual, Rockafellar 1976):
+ * p = k' (J - 1) + (1 - k'/k) p0, where p0 is the p of the frame before. Where the two are the same, p = k (J - 1), so
+ * that what comes to rest is right; and conjugate gradients and line searches never meet k. The creator owns it.
+ */
+#ifndef SINEW_TISSUE_H
+#define SINEW_TISSUE_H
+
+#include "msds/cpu/pressed.h"
+#include "msds/cpu/tissue_mesh.h"
+
+typedef struct tissue {
+    tissue_mesh m;
+    pressed pressed;
+    const lanes *loops;
+    pool *threads;
+    lanes_field *u, *weight;                      /* the state's: m, N */
+    lanes_field step, left, way, pulled, started; /* started: u where the line search begins, m */
+    double *sum;                                  /* chunks */
+    float alpha, beta;
+    const lanes_field *along; /* what loops work on */
+    lanes_field *to;
+    float *points;
+    double pull;     /* N2: the square of the elements' pulls */
+    double residual; /* what is left over the load or the pull, whichever is more */
+} tissue;
+
+/* -1 with e filled, and to be freed all the same. */
+int tissue_make(tissue *t, const msds_problem *p, const sell *s, contacts *c, const lanes *loops, pool *threads,
+                lanes_field *u, lanes_field *weight, err *e);
+void tissue_free(tissue *t);
+/* Holds no pressure: the tissue is at rest. */
+void tissue_reset(tissue *t);
+int64_t tissue_bytes(const tissue *t);
+
+/* Some iterations with the contacts listed, whose forces it fills. */
+void tissue_solve(tissue *t, int64_t iterations);
+
+#endif

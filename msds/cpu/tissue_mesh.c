@@ -1,0 +1,385 @@
+#include "msds/cpu/tissue_mesh.h"
+
+#include "base/mem.h"
+#include "msds/problem/stable_double.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { ROW_LEAST = 5 /* lanes that a group in a row has at least: the others stay empty */ };
+
+/* Elements keep so much of the law's kappa, in mu of linear elasticity: what they have at Poisson's ratio .3. What is
+ * above that acts on the mean of J about points. */
+static const double kept = 7. / 3;
+
+/* Points have a bulk modulus of at most so many mu of linear elasticity at once; the rest of a higher one comes by the
+ * pressure that is held. */
+static const double at_once = 20;
+
+/* An element on its way to a group. */
+typedef struct placed {
+    int32_t node[4]; /* in the solver's order; the first is the least */
+    int32_t corner[4];
+    int32_t element;
+} placed;
+
+typedef struct maker {
+    tissue_mesh *m;
+    const msds_problem *p;
+    const sell *s;
+    placed *list;     /* elements */
+    int32_t *at;      /* groups x LANES: which of the list, or -1 */
+    int32_t *point;   /* elements x 4 */
+    int64_t points;   /* that have elements */
+    double *own_bulk; /* points: kappa times volume */
+    double *own_mu;   /* points: mu of linear elasticity times volume */
+    double *room;     /* points: m3 */
+    err *e;
+} maker;
+
+static int by_shape(const void *a, const void *b)
+{
+    const placed *x = a, *y = b;
+    for (int c = 1; c < 4; c++) {
+        const int32_t p = x->node[c] - x->node[0], q = y->node[c] - y->node[0];
+        if (p != q)
+            return p < q ? -1 : 1;
+    }
+    if (x->node[0] != y->node[0])
+        return x->node[0] < y->node[0] ? -1 : 1;
+    return (x->element > y->element) - (x->element < y->element);
+}
+
+/* Corners ascend, so that elements of one shape look alike. */
+static void place(const maker *k, int64_t t, placed *to)
+{
+    to->element = (int32_t)t;
+    for (int c = 0; c < 4; c++) {
+        const int32_t own = k->s->own_node[k->p->element_node[4 * t + c]];
+        int at = c;
+        for (; at > 0 && to->node[at - 1] > own; at--) {
+            to->node[at] = to->node[at - 1];
+            to->corner[at] = to->corner[at - 1];
+        }
+        to->node[at] = own;
+        to->corner[at] = c;
+    }
+}
+
+/* Whether element `next` of the list stands one node further than the one before. */
+static bool follows(const maker *k, int64_t next)
+{
+    const placed *x = &k->list[next - 1], *y = &k->list[next];
+    for (int c = 0; c < 4; c++)
+        if (y->node[c] != x->node[c] + 1)
+            return false;
+    return true;
+}
+
+static int64_t run_from(const maker *k, int64_t at)
+{
+    int64_t count = 1;
+    while (count < LANES && at + count < k->p->elements && follows(k, at + count))
+        count++;
+    return count;
+}
+
+/* Groups in a row first, in the order of the list, then what is left over. */
+static void group(maker *k)
+{
+    int64_t rows = 0, filled = 0;
+    const int64_t most = 2 * k->p->elements;
+    for (int64_t i = 0; i < most; i++)
+        k->at[i] = -1;
+    for (int64_t i = 0, count; i < k->p->elements; i += count) {
+        count = run_from(k, i);
+        for (int64_t l = 0; l < count && count >= ROW_LEAST; l++)
+            k->at[rows * LANES + l] = (int32_t)(i + l);
+        rows += count >= ROW_LEAST;
+    }
+    for (int64_t i = 0, count; i < k->p->elements; i += count) {
+        count = run_from(k, i);
+        for (int64_t l = 0; l < count && count < ROW_LEAST; l++)
+            k->at[rows * LANES + filled++] = (int32_t)(i + l);
+    }
+    k->m->groups = rows + (filled + LANES - 1) / LANES;
+    for (int64_t g = 0; g < 4 * k->m->groups; g++)
+        k->m->first[g] = g / 4 < rows ? k->list[k->at[g / 4 * LANES]].node[g % 4] : SELL_SCATTERED;
+}
+
+static int make_groups(maker *k)
+{
+    const int64_t elements = k->p->elements;
+    k->list = mem_array(elements, sizeof *k->list, "the solver", k->e);
+    k->at = mem_array(2 * elements + LANES, sizeof *k->at, "the solver", k->e);
+    k->m->first = mem_array(4 * (elements / ROW_LEAST + elements / LANES + 2), sizeof *k->m->first, "the solver", k->e);
+    if (!k->list || !k->at || !k->m->first)
+        return -1;
+    for (int64_t t = 0; t < elements; t++)
+        place(k, t, &k->list[t]);
+    qsort(k->list, (size_t)elements, sizeof *k->list, by_shape);
+    group(k);
+    return 0;
+}
+
+/* ---- points of pressure */
+
+typedef struct corner {
+    int32_t node, volume, at; /* node: in the solver's order; at: element * 4 + corner */
+} corner;
+
+static int by_point(const void *a, const void *b)
+{
+    const corner *x = a, *y = b;
+    if (x->node != y->node)
+        return x->node < y->node ? -1 : 1;
+    if (x->volume != y->volume)
+        return x->volume < y->volume ? -1 : 1;
+    return (x->at > y->at) - (x->at < y->at);
+}
+
+static double kappa_of(const simplex *s)
+{
+    return STABLE_KAPPA(s->lambda, s->mu);
+}
+
+static double kept_of(const simplex *s)
+{
+    return fmin(kappa_of(s), kept * s->mu);
+}
+
+static void add_to_point(maker *k, int32_t point, int64_t t)
+{
+    const simplex *s = &k->p->element[t];
+    k->own_bulk[point] += s->volume / 4 * (kappa_of(s) - kept_of(s));
+    k->own_mu[point] += s->volume / 4 * s->mu;
+    k->room[point] += s->volume / 4;
+}
+
+static int number_points(maker *k, corner *list)
+{
+    const int64_t corners = 4 * k->p->elements;
+    for (int64_t i = 0; i < corners; i++) {
+        const int64_t t = i / 4;
+        list[i] = (corner){k->s->own_node[k->p->element_node[i]], k->p->volume[t], (int32_t)i};
+    }
+    qsort(list, (size_t)corners, sizeof *list, by_point);
+    k->points = 0;
+    for (int64_t i = 0; i < corners; i++) {
+        k->points += !i || list[i].node != list[i - 1].node || list[i].volume != list[i - 1].volume;
+        k->point[list[i].at] = (int32_t)(k->points - 1);
+    }
+    k->own_bulk = mem_array(k->points, sizeof *k->own_bulk, "the solver", k->e);
+    k->own_mu = k->own_bulk ? mem_array(k->points, sizeof *k->own_mu, "the solver", k->e) : NULL;
+    k->room = k->own_mu ? mem_array(k->points, sizeof *k->room, "the solver", k->e) : NULL;
+    for (int64_t i = 0; k->room && i < corners; i++)
+        add_to_point(k, k->point[i], i / 4);
+    return k->room ? 0 : -1;
+}
+
+static bool needs_points(const msds_problem *p)
+{
+    for (int64_t t = 0; t < p->elements; t++)
+        if (kappa_of(&p->element[t]) > kept_of(&p->element[t]))
+            return true;
+    return false;
+}
+
+static int make_points(maker *k)
+{
+    tissue_mesh *m = k->m;
+    if (!needs_points(k->p))
+        return 0;
+    corner *list = mem_array(4 * k->p->elements, sizeof *list, "the solver", k->e);
+    k->point = list ? mem_array(4 * k->p->elements, sizeof *k->point, "the solver", k->e) : NULL;
+    const int failed = !k->point || number_points(k, list);
+    free(list);
+    if (failed)
+        return -1;
+    m->points = (k->points + LANES - 1) / LANES * LANES;
+    m->bulk = mem_array(m->points, sizeof *m->bulk, "the solver", k->e);
+    m->pressure = mem_array(m->points, sizeof *m->pressure, "the solver", k->e);
+    m->pressed = mem_array(m->points, sizeof *m->pressed, "the solver", k->e);
+    m->keep = mem_array(m->points, sizeof *m->keep, "the solver", k->e);
+    m->held = mem_array(m->points, sizeof *m->held, "the solver", k->e);
+    if (!m->bulk || !m->pressure || !m->pressed || !m->keep || !m->held)
+        return -1;
+    for (int64_t i = 0; i < k->points; i++) {
+        const double now = fmin(k->own_bulk[i], at_once * k->own_mu[i]);
+        m->bulk[i] = (float)(now / (k->room[i] * k->room[i]));
+        m->keep[i] = k->own_bulk[i] > 0 ? (float)(1 - now / k->own_bulk[i]) : 0;
+    }
+    return 0;
+}
+
+/* ---- groups' numbers */
+
+static void fill_lane(const maker *k, int64_t g, int lane, const placed *from)
+{
+    tissue_mesh *m = k->m;
+    const simplex *s = &k->p->element[from->element];
+    for (int c = 0; c < 4; c++) {
+        m->node[(4 * g + c) * LANES + lane] = from->node[c];
+        if (m->points)
+            m->point[(4 * g + c) * LANES + lane] = k->point[4 * (int64_t)from->element + from->corner[c]];
+        for (int b = 0; c && b < 3; b++)
+            m->gradient[(9 * g + 3 * (c - 1) + b) * LANES + lane] = (float)s->gradient[from->corner[c]][b];
+    }
+    m->volume[g * LANES + lane] = (float)s->volume;
+    m->mu[g * LANES + lane] = (float)STABLE_MU(s->mu);
+    m->kappa[g * LANES + lane] = (float)kept_of(s);
+}
+
+static int fill_groups(const maker *k)
+{
+    tissue_mesh *m = k->m;
+    const int64_t lanes = m->groups * LANES;
+    const char what[] = "the solver";
+    if (!(m->node = mem_array(4 * lanes, sizeof *m->node, what, k->e)) ||
+        !(m->point = mem_array(4 * lanes, sizeof *m->point, what, k->e)) ||
+        !(m->gradient = mem_array(9 * lanes, sizeof *m->gradient, what, k->e)) ||
+        !(m->volume = mem_array(lanes, sizeof *m->volume, what, k->e)) ||
+        !(m->mu = mem_array(lanes, sizeof *m->mu, what, k->e)) ||
+        !(m->kappa = mem_array(lanes, sizeof *m->kappa, what, k->e)) ||
+        !(m->counted = mem_array(lanes, sizeof *m->counted, what, k->e)) ||
+        !(m->g = mem_array(9 * lanes, sizeof *m->g, what, k->e)) ||
+        !(m->force = mem_array(12 * (lanes + LANES), sizeof *m->force, what, k->e)) ||
+        !(m->swollen = mem_array(lanes + LANES, sizeof *m->swollen, what, k->e)))
+        return -1;
+    for (int64_t i = 0; i < lanes; i++)
+        if (k->at[i] >= 0)
+            fill_lane(k, i / LANES, (int)(i % LANES), &k->list[k->at[i]]);
+    return 0;
+}
+
+/* 1 over a third of the trace of each node's block at rest, about. */
+static int make_inverse(const maker *k)
+{
+    const msds_problem *p = k->p;
+    double *sum = mem_array(k->s->nodes, sizeof *sum, "the solver", k->e);
+    k->m->inverse = sum ? mem_array(k->s->nodes, sizeof *k->m->inverse, "the solver", k->e) : NULL;
+    for (int64_t i = 0; k->m->inverse && i < 4 * p->elements; i++) {
+        const simplex *s = &p->element[i / 4];
+        const double *q = s->gradient[i % 4], own = fmin(s->lambda, (kept - 5. / 6) * s->mu);
+        sum[k->s->own_node[p->element_node[i]]] +=
+            s->volume * (q[0] * q[0] + q[1] * q[1] + q[2] * q[2]) * (own + (s->lambda - own) / 4 + 4 * s->mu) / 3;
+    }
+    for (int64_t n = 0; k->m->inverse && n < p->nodes; n++) {
+        const int32_t own = k->s->own_node[n];
+        k->m->inverse[own] = p->fixed[n] ? 0 : (float)(1 / sum[own]);
+    }
+    free(sum);
+    return k->m->inverse ? 0 : -1;
+}
+
+/* ---- sums */
+
+/* Fills s with what `count` takers have, `at` the taker of each of `items`, and `place` where it stands; empty: what
+ * lanes without any have. */
+static int make_sums(tissue_sums *s, int64_t takers, int64_t items, const int32_t *taker, const int32_t *where,
+                     int32_t empty, err *e)
+{
+    s->slices = (takers + LANES - 1) / LANES;
+    int32_t *count = mem_array(s->slices * LANES, sizeof *count, "the solver", e);
+    s->start = count ? mem_array(s->slices + 1, sizeof *s->start, "the solver", e) : NULL;
+    for (int64_t i = 0; s->start && i < items; i++)
+        count[taker[i]]++;
+    for (int64_t k = 0; s->start && k < s->slices; k++) {
+        int32_t most = 0;
+        for (int l = 0; l < LANES; l++)
+            most = count[k * LANES + l] > most ? count[k * LANES + l] : most;
+        s->start[k + 1] = s->start[k] + most;
+    }
+    s->slots = s->start ? s->start[s->slices] : 0;
+    s->list = s->start ? mem_array(s->slots * LANES, sizeof *s->list, "the solver", e) : NULL;
+    for (int64_t i = 0; s->list && i < s->slots * LANES; i++)
+        s->list[i] = empty;
+    if (s->list)
+        memset(count, 0, (size_t)(s->slices * LANES) * sizeof *count);
+    for (int64_t i = 0; s->list && i < items; i++) {
+        const int32_t own = taker[i];
+        s->list[(s->start[own / LANES] + count[own]++) * LANES + own % LANES] = where[i];
+    }
+    free(count);
+    return s->list ? 0 : -1;
+}
+
+static int make_all_sums(const maker *k)
+{
+    tissue_mesh *m = k->m;
+    const int64_t corners = 4 * k->p->elements;
+    int32_t *taker = mem_array(corners, sizeof *taker, "the solver", k->e);
+    int32_t *where = taker ? mem_array(corners, sizeof *where, "the solver", k->e) : NULL;
+    int32_t *point = where ? mem_array(corners, sizeof *point, "the solver", k->e) : NULL;
+    int32_t *swell = point ? mem_array(corners, sizeof *swell, "the solver", k->e) : NULL;
+    int64_t n = 0;
+    for (int64_t i = 0; swell && i < m->groups * LANES; i++)
+        for (int c = 0; c < 4 && k->at[i] >= 0; c++, n++) {
+            const int64_t g = i / LANES, lane = i % LANES;
+            taker[n] = m->node[(4 * g + c) * LANES + lane];
+            point[n] = m->point[(4 * g + c) * LANES + lane];
+            where[n] = (int32_t)(12 * g * LANES + 3 * c * LANES + lane);
+            swell[n] = (int32_t)i;
+        }
+    const int32_t last = (int32_t)(m->groups * LANES);
+    const int failed = !swell || make_sums(&m->corners, k->s->nodes, n, taker, where, 12 * last, k->e) ||
+                       (m->points && make_sums(&m->swells, m->points, n, point, swell, last, k->e));
+    free(taker);
+    free(where);
+    free(point);
+    free(swell);
+    return failed ? -1 : 0;
+}
+
+int tissue_mesh_make(tissue_mesh *m, const msds_problem *p, const sell *s, err *e)
+{
+    maker k = {.m = m, .p = p, .s = s, .e = e};
+    int failed = -1;
+    if (p->elements > INT32_MAX / 20)
+        err_set(e, NULL, 0, "%lld tetrahedra; expected at most %d for the method tissue", (long long)p->elements,
+                INT32_MAX / 20);
+    else
+        failed = make_groups(&k) || make_points(&k) || fill_groups(&k) || make_inverse(&k) || make_all_sums(&k);
+    free(k.list);
+    free(k.at);
+    free(k.point);
+    free(k.own_bulk);
+    free(k.own_mu);
+    free(k.room);
+    return failed ? -1 : 0;
+}
+
+void tissue_mesh_free(tissue_mesh *m)
+{
+    free(m->first);
+    free(m->node);
+    free(m->point);
+    free(m->gradient);
+    free(m->volume);
+    free(m->mu);
+    free(m->kappa);
+    free(m->bulk);
+    free(m->keep);
+    free(m->held);
+    free(m->inverse);
+    free(m->corners.start);
+    free(m->corners.list);
+    free(m->swells.start);
+    free(m->swells.list);
+    free(m->g);
+    free(m->counted);
+    free(m->force);
+    free(m->swollen);
+    free(m->pressure);
+    free(m->pressed);
+    *m = (tissue_mesh){0};
+}
+
+int64_t tissue_mesh_bytes(const tissue_mesh *m)
+{
+    const int64_t lanes = m->groups * LANES;
+    return lanes * 4 * (4 + 4 + 9 + 3 + 9 + 12 + 2) + m->groups * 16 + m->points * 20 +
+           (m->corners.slots + m->swells.slots) * LANES * 4 + m->corners.slices * (LANES * 4 + 8) +
+           m->swells.slices * 8;
+}

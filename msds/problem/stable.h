@@ -1,0 +1,118 @@
+/* The maths of one element of the stable neo-Hookean law (Smith, de Goes & Kim 2018, ACM Transactions on Graphics
+ * 37:12):
+ *
+ *     W = mu/2 (I - 3) - mu/2 log(I + 1) + kappa/2 (J - alpha)^2,
+ *     I = |F|^2,   J = det F,   alpha = 1 + 3 mu/(4 kappa).
+ *
+ * It is finite for every F, and pulls elements that are inside out back. With mu = 4/3 mu_L and kappa = lambda_L + 5/6
+ * mu_L it has the moduli lambda_L, mu_L of linear elasticity at rest. Of kappa, a part may act on the mean of J about
+ * nodes (Bonet & Burton 1998, Communications in Numerical Methods in Engineering 14:437): elements then share
+ * pressures p of that, and kappa is what is left.
+ *
+ * Where this is included, stable_number is float, double or a vector of them, and stable_larger(a, b) gives the larger
+ * of two. F = 1 + g; matrices are row by row. All is written in g and J - 1, so that small strains keep their digits.
+ * Owns nothing.
+ */
+#ifndef SINEW_STABLE_H
+#define SINEW_STABLE_H
+
+/* 1 over the J below which an element counts less in a mean. */
+#define STABLE_COUNTED 5
+
+#define STABLE_FUNCTION static inline __attribute__((always_inline))
+
+/* mu and kappa of the moduli of linear elasticity. */
+#define STABLE_MU(mu)            (4 * (mu) / 3)
+#define STABLE_KAPPA(lambda, mu) ((lambda) + 5 * (mu) / 6)
+
+/* The cofactors of a matrix. */
+STABLE_FUNCTION void stable_cofactors(const stable_number m[9], stable_number to[9])
+{
+    to[0] = m[4] * m[8] - m[5] * m[7];
+    to[1] = m[5] * m[6] - m[3] * m[8];
+    to[2] = m[3] * m[7] - m[4] * m[6];
+    to[3] = m[2] * m[7] - m[1] * m[8];
+    to[4] = m[0] * m[8] - m[2] * m[6];
+    to[5] = m[1] * m[6] - m[0] * m[7];
+    to[6] = m[1] * m[5] - m[2] * m[4];
+    to[7] = m[2] * m[3] - m[0] * m[5];
+    to[8] = m[0] * m[4] - m[1] * m[3];
+}
+
+/* What cofactors change by with m, along d. */
+STABLE_FUNCTION void stable_cofactors_along(const stable_number m[9], const stable_number d[9], stable_number to[9])
+{
+    to[0] = (d[4] * m[8] + m[4] * d[8]) - (d[5] * m[7] + m[5] * d[7]);
+    to[1] = (d[5] * m[6] + m[5] * d[6]) - (d[3] * m[8] + m[3] * d[8]);
+    to[2] = (d[3] * m[7] + m[3] * d[7]) - (d[4] * m[6] + m[4] * d[6]);
+    to[3] = (d[2] * m[7] + m[2] * d[7]) - (d[1] * m[8] + m[1] * d[8]);
+    to[4] = (d[0] * m[8] + m[0] * d[8]) - (d[2] * m[6] + m[2] * d[6]);
+    to[5] = (d[1] * m[6] + m[1] * d[6]) - (d[0] * m[7] + m[0] * d[7]);
+    to[6] = (d[1] * m[5] + m[1] * d[5]) - (d[2] * m[4] + m[2] * d[4]);
+    to[7] = (d[2] * m[3] + m[2] * d[3]) - (d[0] * m[5] + m[0] * d[5]);
+    to[8] = (d[0] * m[4] + m[0] * d[4]) - (d[1] * m[3] + m[1] * d[3]);
+}
+
+STABLE_FUNCTION stable_number stable_dot(const stable_number a[9], const stable_number b[9])
+{
+    return (a[0] * b[0] + a[1] * b[1] + a[2] * b[2]) + (a[3] * b[3] + a[4] * b[4] + a[5] * b[5]) +
+           (a[6] * b[6] + a[7] * b[7] + a[8] * b[8]);
+}
+
+/* J - 1; cofactors: of g. */
+STABLE_FUNCTION stable_number stable_swelling(const stable_number g[9], const stable_number cofactors[9])
+{
+    return (g[0] + g[4] + g[8]) + (cofactors[0] + cofactors[4] + cofactors[8]) +
+           (g[0] * cofactors[0] + g[1] * cofactors[1] + g[2] * cofactors[2]);
+}
+
+/* How much of an element counts in the mean about nodes: all, but less where J comes near 0, and nothing where it is
+ * inside out. A mean of elements inside out and others too large would else be at rest. swelling: J - 1. */
+STABLE_FUNCTION stable_number stable_counted(stable_number swelling)
+{
+    const stable_number none = swelling * 0;
+    return -stable_larger(-stable_larger((swelling + 1) * STABLE_COUNTED, none), none - 1);
+}
+
+/* What the mean is of, in place of J - 1: its derivative is `counted`. */
+STABLE_FUNCTION stable_number stable_swelling_counted(stable_number swelling, stable_number counted)
+{
+    return counted * (swelling + 1) + (1 - counted * counted) / (2 * STABLE_COUNTED) - 1;
+}
+
+/* The first Piola-Kirchhoff stress a F + q cof F, with a = mu - mu/(I + 1), q = kappa (J - alpha) + p. */
+STABLE_FUNCTION void stable_stress(const stable_number g[9], stable_number mu, stable_number kappa, stable_number p,
+                                   stable_number to[9])
+{
+    stable_number c[9];
+    stable_cofactors(g, c);
+    const stable_number trace = g[0] + g[4] + g[8], more = 2 * trace + stable_dot(g, g); /* I - 3 */
+    const stable_number a = mu - mu / (more + 4), pressure = kappa * stable_swelling(g, c) + p;
+    const stable_number q = pressure - mu * 3 / 4, both = mu * more / (4 * (more + 4)) + pressure; /* a + q */
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+            to[3 * i + j] = a * g[3 * i + j] + q * (c[3 * i + j] - g[3 * j + i]);
+    for (int i = 0; i < 3; i++)
+        to[4 * i] += both + q * trace;
+}
+
+/* What the stress changes by along d (the derivatives of a displacement), where p changes by more. */
+STABLE_FUNCTION void stable_tangent(const stable_number g[9], const stable_number d[9], stable_number mu,
+                                    stable_number kappa, stable_number p, stable_number more, stable_number to[9])
+{
+    stable_number c[9], f[9], of_f[9], along[9];
+    stable_cofactors(g, c);
+    const stable_number q = kappa * stable_swelling(g, c) + p - mu * 3 / 4;
+    for (int i = 0; i < 9; i++)
+        f[i] = g[i];
+    for (int i = 0; i < 9; i += 4)
+        f[i] += 1;
+    stable_cofactors(f, of_f);
+    stable_cofactors_along(f, d, along);
+    const stable_number one = stable_dot(f, f) + 1, a = mu - mu / one;
+    const stable_number b = 2 * mu * stable_dot(f, d) / (one * one), r = kappa * stable_dot(of_f, d) + more;
+    for (int i = 0; i < 9; i++)
+        to[i] = (a * d[i] + b * f[i]) + (q * along[i] + r * of_f[i]);
+}
+
+#endif
