@@ -157,7 +157,12 @@ static void conclude(cg *g)
     double load, square;
     find_pulled(g, false);
     square = find_left(g, &load);
-    pressed_forces(&g->pressed, g->u, &g->left, g->weight, &square, &load);
+    for (int64_t i = 0; i < g->pressed.c->count; i++) {
+        contact *c = &g->pressed.c->list[i];
+        c->force = g->p->options.penalty ? g->p->repulsion[c->node] * pressed_depth(&g->pressed, c, g->u)
+                                         : -pressed_along(&g->left, g->s->own_node[c->node], c);
+        pressed_count(&g->pressed, c, &g->left, g->weight, &square, &load);
+    }
     load = fmax(fmax(load, g->pull), g->p->slight);
     g->residual = load > 0 ? sqrt(fmax(0, square) / load) : 0;
 }

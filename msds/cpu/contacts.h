@@ -13,6 +13,8 @@ typedef struct contact {
     double depth;   /* m: how far it has to go that way; below 0: how far it may come */
     double from[3]; /* m: its displacement where depth was found */
     double force;   /* N: what it is pushed with, along way */
+    bool active;    /* tissue.h: it is held on its plane, */
+    double pull;    /* N: by what would pull it off; below 0: press it on */
 } contact;
 
 typedef struct contacts {

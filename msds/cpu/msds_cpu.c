@@ -19,6 +19,9 @@ enum { FIELDS = 6, ROUNDS = 4 /* of an exact frame, each with the nodes that the
  * its size. */
 static const double exact_tolerance = 1e-6, missed = 1e-6;
 
+/* A frame of tissue ends at this residual: single precision gets little further. */
+static const double tissue_tolerance = 1e-6;
+
 typedef struct msds_state cpu_state;
 
 /* What finite elements take; each is made when it is first wanted. The stiffness of warped elements changes with their
@@ -287,38 +290,22 @@ static void find_contacts(cpu_state *s, const double *u, contacts_rule rule)
         contacts_find(&s->contacts, s->loops, &s->w, s->p, u, s->threads, rule);
 }
 
-/* Contacts are found where the tissue is; those that let go, of which the tissue may come after the probe, halfway
- * again. */
-static void step_iterations(cpu_state *s, void (*solve)(void *solver, int64_t iterations), void *solver, int64_t count)
+static int step_cg(cpu_state *s, int64_t count, err *e)
 {
     double force[3];
-    const int64_t before = contacts_held(&s->contacts, s->p);
+    if (!fem_of(s)->cg && make_cg(s, s->plan.warp, e))
+        return -1;
+    cg *solver = fem_of(s)->cg;
+    int64_t before = contacts_held(&s->contacts, s->p);
     find_contacts(s, NULL, CONTACTS_PRESSED);
-    if (contacts_sum(&s->contacts, force) < before && count > 1) {
-        solve(solver, count / 2);
+    if (contacts_sum(&s->contacts, force) < before && count > 1) { /* let go of: tissue may come after the probe */
+        cg_solve(solver, count / 2);
         contacts_hold(&s->contacts, s->p);
         find_contacts(s, NULL, CONTACTS_PRESSED);
         count -= count / 2;
     }
-    solve(solver, count);
-}
-
-static void solve_cg(void *solver, int64_t iterations)
-{
-    cg_solve(solver, iterations);
-}
-
-static int step_cg(cpu_state *s, int64_t count, err *e)
-{
-    if (!fem_of(s)->cg && make_cg(s, s->plan.warp, e))
-        return -1;
-    step_iterations(s, solve_cg, fem_of(s)->cg, count);
+    cg_solve(solver, count);
     return 0;
-}
-
-static void solve_tissue(void *solver, int64_t iterations)
-{
-    tissue_solve(solver, iterations);
 }
 
 static int make_tissue(cpu_state *s, err *e)
@@ -332,7 +319,14 @@ static int step_tissue(cpu_state *s, int64_t count, err *e)
 {
     if (!s->tissue && make_tissue(s, e))
         return -1;
-    step_iterations(s, solve_tissue, s->tissue, count);
+    tissue_hold(s->tissue);
+    while (count > 0) {
+        find_contacts(s, NULL, s->p->options.penalty ? CONTACTS_PRESSED : CONTACTS_NEAR);
+        count -= tissue_step(s->tissue, count);
+        contacts_hold(&s->contacts, s->p);
+        if (s->tissue->residual < tissue_tolerance)
+            break;
+    }
     return 0;
 }
 

@@ -76,21 +76,16 @@ static inline void pressed_push(const pressed *k, const lanes_field *u, lanes_fi
     }
 }
 
-/* The forces of contact at u, where `left` is gravity less what the elements pull with. Adds what they change the
- * squares of |left| and of |weight| by. */
-static inline void pressed_forces(const pressed *k, const lanes_field *u, const lanes_field *left,
-                                  const lanes_field *weight, double *square, double *load)
+/* What a contact's force, which is known, changes the squares of |left| and of |weight| by; left: gravity less what the
+ * elements pull with. */
+static inline void pressed_count(const pressed *k, const contact *c, const lanes_field *left, const lanes_field *weight,
+                                 double *square, double *load)
 {
-    for (int64_t i = 0; i < k->c->count; i++) {
-        contact *c = &k->c->list[i];
-        const int32_t own = k->s->own_node[c->node];
-        c->force =
-            k->p->options.penalty ? k->p->repulsion[c->node] * pressed_depth(k, c, u) : -pressed_along(left, own, c);
-        for (int a = 0; a < 3; a++) {
-            const double rest = (double)left->x[a][own], heavy = (double)weight->x[a][own], by = c->force * c->way[a];
-            *square += (rest + by) * (rest + by) - rest * rest;
-            *load += (heavy + by) * (heavy + by) - heavy * heavy;
-        }
+    const int32_t own = k->s->own_node[c->node];
+    for (int a = 0; a < 3; a++) {
+        const double rest = (double)left->x[a][own], heavy = (double)weight->x[a][own], by = c->force * c->way[a];
+        *square += (rest + by) * (rest + by) - rest * rest;
+        *load += (heavy + by) * (heavy + by) - heavy * heavy;
     }
 }
 

@@ -7,11 +7,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { FIELDS = 5, SEARCHES = 6 /* steps that a line search tries at most */ };
+enum { FIELDS = 7, SEARCHES = 6 /* steps that a line search tries at most */ };
 
 /* Conjugate gradients stop at this share of the square of what was left, so that Newton's next step begins from a new
  * tangent; a line search at this share of the slope. */
 static const double forcing = .01, enough = .5;
+
+/* The length of a step along what is left: below 2 over the largest eigenvalue of the tangent times the inverse. */
+static const double fixed = .35;
 
 /* A residual below which pressures are held for the next frame. */
 static const double balanced = .5;
@@ -120,6 +123,11 @@ static void clear(const tissue *t, lanes_field *f)
     memset(f->memory, 0, 3 * (size_t)(t->pressed.s->nodes + 2 * LANES) * sizeof *f->memory);
 }
 
+static void copy(const tissue *t, lanes_field *to, const lanes_field *from)
+{
+    memcpy(to->memory, from->memory, 3 * (size_t)(t->pressed.s->nodes + 2 * LANES) * sizeof *to->memory);
+}
+
 static double dot(const tissue *t, const lanes_field *a, const lanes_field *b)
 {
     double sum = 0;
@@ -147,20 +155,12 @@ static double find_left(tissue *t, double *load)
     return square;
 }
 
-/* The same with what presses, where a search may go. */
-static void find_search(tissue *t)
+/* With the forces of penalties. */
+static void find_all_left(tissue *t)
 {
     double load;
     find_left(t, &load);
     pressed_push(&t->pressed, t->u, &t->left);
-    pressed_keep_out(&t->pressed, &t->left);
-}
-
-static void subtract(const tissue *t, lanes_field *from, const lanes_field *what)
-{
-    for (int a = 0; a < 3; a++)
-        for (int64_t i = 0; i < t->pressed.s->nodes; i++)
-            from->x[a][i] -= what->x[a][i];
 }
 
 /* u = started + share * step. */
@@ -171,57 +171,209 @@ static void go(tissue *t, double share)
             t->u->x[a][i] = t->started.x[a][i] + (float)share * t->step.x[a][i];
 }
 
-/* ---- Newton */
+/* ---- contact */
 
-/* Conjugate gradients for the step, from what contact moves; left: what a search may go along. Returns how many
- * iterations it took; *gain: left at the beginning times what was added to the step, above 0. Where the tangent is not
- * positive along a way, it stops, with that way if it is the first. */
-static int64_t find_step(tissue *t, int64_t most, double *gain)
+static int32_t own_of(const tissue *t, const contact *c)
 {
-    clear(t, &t->way);
-    clear(t, &t->pulled);
-    t->alpha = t->beta = 0;
-    double squared = over_nodes(t, advance_work);
-    const double least = forcing * squared;
-    int64_t i = 0;
-    *gain = 0;
-    for (; i < most && squared > least && squared > 0; i++) {
-        over_nodes(t, turn_work);
-        double curvature = find_change(t, &t->way) + pressed_stiffen(&t->pressed, &t->way, &t->pulled);
-        const bool is_positive = curvature > 0;
-        if (!is_positive && i)
-            break;
-        pressed_keep_out(&t->pressed, &t->pulled);
-        t->alpha = is_positive ? (float)(squared / curvature) : 1;
-        *gain += (double)t->alpha * squared;
-        const double next = over_nodes(t, advance_work);
-        if (!is_positive)
-            return i + 1;
-        t->beta = (float)(next / squared);
-        squared = next;
-    }
-    return i;
+    return t->pressed.s->own_node[c->node];
 }
 
-/* The nodes that a probe moves go their way in the step; what is left then is what that pulls. */
-static void begin_step(tissue *t)
+/* How far a contact's node may still go toward the probe in the step, m; below 0: it has to come out by that. */
+static double room_of(const tissue *t, const contact *c)
+{
+    return pressed_along(&t->step, own_of(t, c), c) - c->depth;
+}
+
+/* Those inside the probe have to come out in the step; those that it pressed before stay at its surface. */
+static void begin_contacts(tissue *t)
+{
+    for (int64_t i = 0; i < t->pressed.c->count; i++) {
+        contact *c = &t->pressed.c->list[i];
+        c->active = !t->pressed.p->options.penalty && (c->depth > 0 || c->force > 0);
+        c->pull = 0;
+        if (c->active)
+            pressed_add(&t->step, own_of(t, c), c, c->depth);
+    }
+}
+
+/* Of nodes that are held, takes out of f what it has along the normals of their planes; share times that joins what
+ * pulls them. */
+static void keep_out(const tissue *t, lanes_field *f, double share)
+{
+    for (int64_t i = 0; i < t->pressed.c->count; i++) {
+        contact *c = &t->pressed.c->list[i];
+        if (!c->active)
+            continue;
+        const double along = pressed_along(f, own_of(t, c), c);
+        c->pull += share * along;
+        pressed_add(f, own_of(t, c), c, -along);
+    }
+}
+
+/* The sum of the squares of what pulls nodes off their planes, times inverse: as squares of what is left are summed. */
+static double sum_off(const tissue *t)
+{
+    double off = 0;
+    for (int64_t i = 0; i < t->pressed.c->count; i++) {
+        const contact *c = &t->pressed.c->list[i];
+        const double pull = c->active ? fmax(c->pull, 0) : 0;
+        off += pull * pull * (double)t->m.inverse[own_of(t, c)];
+    }
+    return off;
+}
+
+/* How far the step may go along the way until a node that is free comes to the probe. */
+static double feasible(const tissue *t)
+{
+    double most = INFINITY;
+    for (int64_t i = 0; i < t->pressed.c->count && !t->pressed.p->options.penalty; i++) {
+        const contact *c = &t->pressed.c->list[i];
+        const double along = c->active ? 0 : pressed_along(&t->way, own_of(t, c), c);
+        if (along < 0)
+            most = fmin(most, fmax(room_of(t, c), 0) / -along);
+    }
+    return most;
+}
+
+/* ---- Newton */
+
+/* step += alpha way, with what that leaves. Returns r . r inverse. */
+static double advance(tissue *t, double alpha)
+{
+    keep_out(t, &t->pulled, -alpha);
+    t->alpha = (float)alpha;
+    return over_nodes(t, advance_work);
+}
+
+static double change_along(tissue *t)
+{
+    return find_change(t, &t->way) + pressed_stiffen(&t->pressed, &t->way, &t->pulled);
+}
+
+/* Lets nodes go that are pulled off their planes: a step along their normals. off: of sum_off. */
+static double let_go(tissue *t, double off)
+{
+    clear(t, &t->way);
+    for (int64_t i = 0; i < t->pressed.c->count; i++) {
+        contact *c = &t->pressed.c->list[i];
+        const int32_t own = own_of(t, c);
+        if (!c->active || !(c->pull > 0))
+            continue;
+        c->active = false;
+        pressed_add(&t->left, own, c, c->pull);
+        pressed_add(&t->way, own, c, c->pull * (double)t->m.inverse[own]);
+    }
+    const double curvature = change_along(t);
+    return advance(t, curvature > 0 ? off / curvature : 1);
+}
+
+/* Holds a node on its plane. */
+static void hold(tissue *t, contact *c)
+{
+    const int32_t own = own_of(t, c);
+    c->active = true;
+    c->pull = pressed_along(&t->left, own, c);
+    pressed_add(&t->left, own, c, -c->pull);
+}
+
+/* Holds nodes that came to the probe so far along the way. */
+static void meet(tissue *t, double may)
+{
+    for (int64_t i = 0; i < t->pressed.c->count; i++) {
+        contact *c = &t->pressed.c->list[i];
+        const double along = c->active ? 0 : pressed_along(&t->way, own_of(t, c), c);
+        if (along < 0 && room_of(t, c) <= -along * may * 1e-6)
+            hold(t, c);
+    }
+}
+
+/* A step of fixed length along what is left, of which nodes that would go into the probe come to its surface. */
+static double expand(tissue *t)
+{
+    t->beta = 0;
+    over_nodes(t, turn_work);
+    keep_out(t, &t->way, 0);
+    for (int64_t i = 0; i < t->pressed.c->count; i++) {
+        contact *c = &t->pressed.c->list[i];
+        const double along = pressed_along(&t->way, own_of(t, c), c), most = -room_of(t, c) / fixed;
+        if (c->active || along >= most)
+            continue;
+        hold(t, c);
+        pressed_add(&t->way, own_of(t, c), c, most - along);
+    }
+    change_along(t);
+    return advance(t, fixed);
+}
+
+/* The nodes that a probe moves go their way in the step; what that pulls leaves what is left. Returns r . r inverse. */
+static double begin_step(tissue *t)
 {
     clear(t, &t->step);
-    if (!pressed_move(&t->pressed, &t->step))
-        return;
-    find_change(t, &t->step);
-    subtract(t, &t->left, &t->pulled);
-    pressed_keep_out(&t->pressed, &t->left);
+    begin_contacts(t);
+    keep_out(t, &t->left, 1);
+    copy(t, &t->way, &t->step);
+    change_along(t);
+    clear(t, &t->step);
+    return advance(t, 1);
+}
+
+/* What is left where a Newton step begins, also of what would pull nodes off their planes. */
+static void note_first(tissue *t)
+{
+    copy(t, &t->first, &t->left);
+    copy(t, &t->moved, &t->step);
+    for (int64_t i = 0; i < t->pressed.c->count; i++) {
+        const contact *c = &t->pressed.c->list[i];
+        pressed_add(&t->first, own_of(t, c), c, c->active ? fmax(c->pull, 0) : 0);
+    }
+}
+
+/* The step that the tangent asks for, with bounds: nodes stay out of the probe (modified proportioning with reduced
+ * gradient projections, MPRGP, Dostal & Schoberl 2005, Computational Optimization and Applications 30:23; Gamma = 1).
+ * Returns how many products with the tangent it took. Where the tangent is not positive along a way, it stops, with
+ * that way if it is the first. */
+static int64_t find_step(tissue *t, int64_t most)
+{
+    double free = begin_step(t), off = sum_off(t);
+    const double least = forcing * (free + off);
+    int64_t count = 1;
+    note_first(t);
+    for (t->beta = 0; count < most && free + off > least; count++) {
+        if (off > free) {
+            free = let_go(t, off);
+            t->beta = 0;
+        } else {
+            over_nodes(t, turn_work);
+            keep_out(t, &t->way, 0);
+            const double curvature = change_along(t), may = feasible(t);
+            if (!(curvature > 0) && count > 1)
+                break;
+            const double want = curvature > 0 ? free / curvature : 1, before = free;
+            free = advance(t, fmin(want, may));
+            t->beta = (float)(free / before);
+            if (!(curvature > 0))
+                break;
+            if (want > may) {
+                meet(t, may);
+                free = expand(t);
+                count++;
+            }
+        }
+        off = sum_off(t);
+    }
+    return count;
 }
 
 /* Goes along the step as far as that does not overshoot by much: what is left pulls back along it by at most half of
- * the gain that conjugate gradients saw in it. Contact's ways have no part in that. */
-static void search(tissue *t, double gain)
+ * the gain that was seen in what conjugate gradients added to it. */
+static void search(tissue *t)
 {
+    const double gain = dot(t, &t->first, &t->step) - dot(t, &t->first, &t->moved);
     double share = 1;
     for (int i = 0;; i++) {
         go(t, share);
-        find_search(t);
+        find_all_left(t);
+        keep_out(t, &t->left, 0);
         const double slope = dot(t, &t->left, &t->step);
         if (i == SEARCHES - 1 || slope >= -enough * gain)
             return;
@@ -229,55 +381,37 @@ static void search(tissue *t, double gain)
     }
 }
 
-/* Contacts stand where the last step left them. */
-static void move_contacts(tissue *t)
-{
-    contacts *c = t->pressed.c;
-    for (int64_t i = 0; i < c->count; i++) {
-        const int32_t own = t->pressed.s->own_node[c->list[i].node];
-        c->list[i].depth = pressed_depth(&t->pressed, &c->list[i], t->u);
-        for (int a = 0; a < 3; a++)
-            c->list[i].from[a] = (double)t->u->x[a][own];
-    }
-}
-
 /* The forces of contact, and what is left then, over the load. */
 static void conclude(tissue *t)
 {
     double load, square = find_left(t, &load);
-    pressed_forces(&t->pressed, t->u, &t->left, t->weight, &square, &load);
+    for (int64_t i = 0; i < t->pressed.c->count; i++) {
+        contact *c = &t->pressed.c->list[i];
+        const double held = c->active ? fmax(-pressed_along(&t->left, own_of(t, c), c), 0) : 0;
+        c->force = t->pressed.p->options.penalty
+                       ? t->pressed.p->repulsion[c->node] * pressed_depth(&t->pressed, c, t->u)
+                       : held;
+        pressed_count(&t->pressed, c, &t->left, t->weight, &square, &load);
+    }
     load = fmax(fmax(load, t->pull), t->pressed.p->slight);
     t->residual = load > 0 ? sqrt(fmax(0, square) / load) : 0;
 }
 
-static void copy(const tissue *t, lanes_field *to, const lanes_field *from)
-{
-    memcpy(to->memory, from->memory, 3 * (size_t)(t->pressed.s->nodes + 2 * LANES) * sizeof *to->memory);
-}
-
 /* Not of a state that is far from balance, whose pressures mean nothing. */
-static void hold_pressure(tissue *t)
+void tissue_hold(tissue *t)
 {
     for (int64_t i = 0; i < t->m.points && t->residual < balanced; i++)
         t->m.held[i] = t->m.keep[i] * t->m.pressure[i];
 }
 
-void tissue_solve(tissue *t, int64_t iterations)
+int64_t tissue_step(tissue *t, int64_t most)
 {
-    hold_pressure(t);
-    find_search(t);
-    while (iterations > 0) {
-        double gain;
-        copy(t, &t->started, t->u);
-        begin_step(t);
-        const int64_t took = find_step(t, iterations, &gain);
-        search(t, gain);
-        move_contacts(t);
-        iterations -= took + 1; /* beginning a step and searching along it take as long as one */
-        if (!took)
-            break;
-    }
+    find_all_left(t);
+    copy(t, &t->started, t->u);
+    const int64_t took = find_step(t, most);
+    search(t);
     conclude(t);
+    return took + 1;
 }
 
 /* ---- life */
@@ -286,7 +420,7 @@ int tissue_make(tissue *t, const msds_problem *p, const sell *s, contacts *c, co
                 lanes_field *u, lanes_field *weight, err *e)
 {
     *t = (tissue){.pressed = {p, s, c}, .loops = loops, .threads = threads, .u = u, .weight = weight};
-    lanes_field *fields[FIELDS] = {&t->step, &t->left, &t->way, &t->pulled, &t->started};
+    lanes_field *fields[FIELDS] = {&t->step, &t->left, &t->way, &t->pulled, &t->started, &t->first, &t->moved};
     t->sum = mem_array(pool_chunks(s->count, SELL_CHUNK), sizeof *t->sum, "the solver", e);
     for (int i = 0; t->sum && i < FIELDS; i++)
         if (lanes_field_make(fields[i], s->nodes, e))
@@ -303,7 +437,7 @@ void tissue_reset(tissue *t)
 
 void tissue_free(tissue *t)
 {
-    lanes_field *fields[FIELDS] = {&t->step, &t->left, &t->way, &t->pulled, &t->started};
+    lanes_field *fields[FIELDS] = {&t->step, &t->left, &t->way, &t->pulled, &t->started, &t->first, &t->moved};
     for (int i = 0; i < FIELDS; i++)
         lanes_field_free(fields[i]);
     free(t->sum);

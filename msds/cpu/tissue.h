@@ -1,7 +1,8 @@
 /* Newton's method with conjugate gradients on stable neo-Hookean tetrahedra (msds/problem/stable.h): so many conjugate
  * gradients a frame, from the frame before, in single precision, by products with the tangent that no matrix stores
- * (tissue_mesh.h). Nodes that a probe has to move by prescribed displacements are moved along with the step, so that a
- * long way turns no element inside out that Newton's line search can spare.
+ * (tissue_mesh.h). Prescribed contact is a bound of each node near the probe: it stays outside of the plane that
+ * touches the probe where the node would come out. Nodes that have to come out do so in the step, so that a line search
+ * can spare elements what a long way would do.
  *
  * Of a tissue that hardly changes its volume, points have a bulk modulus k' of 20 mu at most, and the rest by a
  * pressure that is held from frame to frame (a proximal point method for the dual, Rockafellar 1976):
@@ -19,9 +20,10 @@ typedef struct tissue {
     pressed pressed;
     const lanes *loops;
     pool *threads;
-    lanes_field *u, *weight;                      /* the state's: m, N */
-    lanes_field step, left, way, pulled, started; /* started: u where the line search begins, m */
-    double *sum;                                  /* chunks */
+    lanes_field *u, *weight; /* the state's: m, N */
+    lanes_field step, left, way, pulled;
+    lanes_field started, first, moved; /* u, left and step where a Newton step began */
+    double *sum;                       /* chunks */
     float alpha, beta;
     const lanes_field *along; /* what loops work on */
     lanes_field *to;
@@ -38,7 +40,11 @@ void tissue_free(tissue *t);
 void tissue_reset(tissue *t);
 int64_t tissue_bytes(const tissue *t);
 
-/* Some iterations with the contacts listed, whose forces it fills. */
-void tissue_solve(tissue *t, int64_t iterations);
+/* Holds the pressures of the frame before. */
+void tissue_hold(tissue *t);
+
+/* A step of Newton's, of so many iterations at most, with the contacts listed: those near the probe, or, for a penalty,
+ * those in it. Fills their forces. Returns how many iterations it took. */
+int64_t tissue_step(tissue *t, int64_t most);
 
 #endif

@@ -1,13 +1,14 @@
 /* The maths of one element of the stable neo-Hookean law (Smith, de Goes & Kim 2018, ACM Transactions on Graphics
  * 37:12):
  *
- *     W = mu/2 (I - 3) - mu/2 log(I + 1) + kappa/2 (J - alpha)^2,
- *     I = |F|^2,   J = det F,   alpha = 1 + 3 mu/(4 kappa).
+ *     W = mu/2 (I - 3) - mu/2 log(I + 1) + kappa/2 (J - alpha)^2 + 110 mu h^2 max(0, 1 - J/h)^3,
+ *     I = |F|^2,   J = det F,   alpha = 1 + 3 mu/(4 kappa),   h = .2.
  *
- * It is finite for every F, and pulls elements that are inside out back. With mu = 4/3 mu_L and kappa = lambda_L + 5/6
- * mu_L it has the moduli lambda_L, mu_L of linear elasticity at rest. Of kappa, a part may act on the mean of J about
- * nodes (Bonet & Burton 1998, Communications in Numerical Methods in Engineering 14:437): elements then share
- * pressures p of that, and kappa is what is left.
+ * The last term is ours: it keeps elements from being pressed flat, up to a pressure of 66 mu. W is finite for every F,
+ * and pulls elements that are inside out back. With mu = 4/3 mu_L and kappa = lambda_L + 5/6 mu_L it has the moduli
+ * lambda_L, mu_L of linear elasticity at rest. Of kappa, a part may act on the mean of J about nodes (Bonet & Burton
+ * 1998, Communications in Numerical Methods in Engineering 14:437): elements then share pressures p of that, and kappa
+ * is what is left.
  *
  * Where this is included, stable_number is float, double or a vector of them, and stable_larger(a, b) gives the larger
  * of two. F = 1 + g; matrices are row by row. All is written in g and J - 1, so that small strains keep their digits.
@@ -18,6 +19,10 @@
 
 /* 1 over the J below which an element counts less in a mean. */
 #define STABLE_COUNTED 5
+
+/* J below which an element gets stiff, and how stiff, in mu. */
+#define STABLE_THIN  .2f
+#define STABLE_STIFF 330
 
 #define STABLE_FUNCTION static inline __attribute__((always_inline))
 
@@ -80,14 +85,23 @@ STABLE_FUNCTION stable_number stable_swelling_counted(stable_number swelling, st
     return counted * (swelling + 1) + (1 - counted * counted) / (2 * STABLE_COUNTED) - 1;
 }
 
-/* The first Piola-Kirchhoff stress a F + q cof F, with a = mu - mu/(I + 1), q = kappa (J - alpha) + p. */
+/* How far J is below STABLE_THIN, or 0. */
+STABLE_FUNCTION stable_number stable_lacking(stable_number swelling)
+{
+    return stable_larger(STABLE_THIN - 1 - swelling, swelling * 0);
+}
+
+/* The first Piola-Kirchhoff stress a F + q cof F, with a = mu - mu/(I + 1), q = kappa (J - alpha) + p, less
+ * what keeps it from being flat. */
 STABLE_FUNCTION void stable_stress(const stable_number g[9], stable_number mu, stable_number kappa, stable_number p,
                                    stable_number to[9])
 {
     stable_number c[9];
     stable_cofactors(g, c);
     const stable_number trace = g[0] + g[4] + g[8], more = 2 * trace + stable_dot(g, g); /* I - 3 */
-    const stable_number a = mu - mu / (more + 4), pressure = kappa * stable_swelling(g, c) + p;
+    const stable_number a = mu - mu / (more + 4), swelling = stable_swelling(g, c);
+    const stable_number lacking = stable_lacking(swelling);
+    const stable_number pressure = kappa * swelling + p - mu * STABLE_STIFF / STABLE_THIN * lacking * lacking;
     const stable_number q = pressure - mu * 3 / 4, both = mu * more / (4 * (more + 4)) + pressure; /* a + q */
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++)
@@ -102,7 +116,9 @@ STABLE_FUNCTION void stable_tangent(const stable_number g[9], const stable_numbe
 {
     stable_number c[9], f[9], of_f[9], along[9];
     stable_cofactors(g, c);
-    const stable_number q = kappa * stable_swelling(g, c) + p - mu * 3 / 4;
+    const stable_number swelling = stable_swelling(g, c), lacking = stable_lacking(swelling);
+    const stable_number stiff = mu * STABLE_STIFF / STABLE_THIN * lacking;
+    const stable_number q = kappa * swelling + p - stiff * lacking - mu * 3 / 4;
     for (int i = 0; i < 9; i++)
         f[i] = g[i];
     for (int i = 0; i < 9; i += 4)
@@ -110,7 +126,8 @@ STABLE_FUNCTION void stable_tangent(const stable_number g[9], const stable_numbe
     stable_cofactors(f, of_f);
     stable_cofactors_along(f, d, along);
     const stable_number one = stable_dot(f, f) + 1, a = mu - mu / one;
-    const stable_number b = 2 * mu * stable_dot(f, d) / (one * one), r = kappa * stable_dot(of_f, d) + more;
+    const stable_number b = 2 * mu * stable_dot(f, d) / (one * one),
+                        r = (kappa + 2 * stiff) * stable_dot(of_f, d) + more;
     for (int i = 0; i < 9; i++)
         to[i] = (a * d[i] + b * f[i]) + (q * along[i] + r * of_f[i]);
 }

@@ -38,8 +38,8 @@ static void say_row(session *s, const char *row)
 static void say_heading(session *s)
 {
     char row[200];
-    snprintf(row, sizeof row, "%10s  %-10s  %7s  %9s  %9s  %6s%s", "time/s", "method", "pressed", "force/N", "residual",
-             "solves", s->other ? "  other's/N   rms/rms   max/max" : "");
+    snprintf(row, sizeof row, "%10s  %-10s  %7s  %9s  %9s  %6s%s  %8s", "time/s", "method", "pressed", "force/N",
+             "residual", "solves", s->other ? "  other's/N   rms/rms   max/max" : "", "inverted");
     say_row(s, row);
 }
 
@@ -72,8 +72,8 @@ void frame_report_row(session *s)
     if (s->other)
         snprintf(other, sizeof other, "  %9.4g  %8.4g  %8.4g", size_of(s->other->reading.force), s->other->mean,
                  s->other->worst);
-    snprintf(row, sizeof row, "%10.6g  %-10s  %7lld  %9.4g  %9s  %6s%s", s->time, name_of(s),
-             (long long)reading->contacts, size_of(reading->force), left, solves, other);
+    snprintf(row, sizeof row, "%10.6g  %-10s  %7lld  %9.4g  %9s  %6s%s  %8lld", s->time, name_of(s),
+             (long long)reading->contacts, size_of(reading->force), left, solves, other, (long long)s->inverted.now);
     if (s->posed == 1)
         say_heading(s);
     say_row(s, row);
@@ -100,6 +100,7 @@ void frame_report_end(session *s)
     char force[200] = "";
     const peak *u = &s->moved, *f = &s->pushed;
     warn_of_misses(s);
+    inverted_warn(&s->inverted, s->posed, methods_words[s->used], &s->warnings);
     if (f->value > 0)
         snprintf(force, sizeof force, "; largest force on the probe %.4g N, from %lld node%s, at %.6g s", f->value,
                  (long long)f->contacts, f->contacts == 1 ? "" : "s", f->time);

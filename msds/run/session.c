@@ -126,7 +126,7 @@ static int take_frames(session *s, err *e)
 
 int session_start(session *s, err *e)
 {
-    if (take_frames(s, e))
+    if (take_frames(s, e) || inverted_make(&s->inverted, &s->problem, s->threads, e))
         return -1;
     s->state = s->device->create(&s->problem, s->threads, e);
     if (!s->state)
@@ -282,6 +282,7 @@ void session_free(session *s)
     compare_free(s->other, s->device);
     if (s->state)
         s->device->destroy(s->state);
+    inverted_free(&s->inverted);
     pool_destroy(s->threads);
     for (int i = 0; i < SESSION_TEXTS; i++)
         free(s->text[i]);

@@ -9,6 +9,7 @@
 #include "msds/problem/largest.h"
 #include "msds/problem/problem.h"
 #include "msds/run/compare.h"
+#include "msds/run/inverted.h"
 #include "msds/run/methods.h"
 #include "msds/run/press.h"
 #include "msds/run/run_options.h"
@@ -49,6 +50,7 @@ typedef struct session {
     const msds_executor *device;
     pool *threads;
     msds_state *state;
+    inverted inverted;
     compare *other;       /* the other method, or NULL */
     const char *source;   /* of the poses, for messages */
     method_word method;   /* now */

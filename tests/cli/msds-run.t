@@ -20,7 +20,7 @@ is "$(grep -c 'stable step' "$T/stderr")" 1 "says the stable step"
 is "$(grep -c 'inertia is' "$T/stderr")" 1 "says by what inertia grew"
 is "$(sinew info --get frames "$T/msds.sinew")" 10 "a frame a pose"
 check "finite elements" msds-run --method fem --residual --probe sphere:2cm --poses "$T/press.tum" -o "$T/fem.sinew" <"$T/block.sinew"
-is "$(awk '$3 == "fem" && NF == 7' "$T/stderr" | wc -l | tr -d ' ') $(grep -c springs "$T/stderr")" "10 0" "says what each frame leaves, and nothing of springs"
+is "$(awk '$3 == "fem" && NF == 8' "$T/stderr" | wc -l | tr -d ' ') $(grep -c springs "$T/stderr")" "10 0" "says what each frame leaves, and nothing of springs"
 check "exactly" msds-run --method fem --exact --residual --probe sphere:2cm --poses "$T/press.tum" -o "$T/exact.sinew" <"$T/block.sinew"
 awk '$3 == "fem-exact" { if ($6 + 0 > 1e-6) bad++; n++ } END { exit !(n == 10 && !bad) }' "$T/stderr"
 is $? 0 "each frame to 1e-6"
@@ -93,12 +93,12 @@ done
 is "$(frames "$T/named.sinew" | grep -c '^frame ')" 4 "of four frames each"
 { cat "$T/four.tum"; echo 'method warp'; cat "$T/fifth.tum"; echo 'method exact-warp'; cat "$T/fifth.tum"; echo 'method fem'; cat "$T/fifth.tum"; echo 'method tissue'; cat "$T/fifth.tum"; echo 'method exact'; cat "$T/fifth.tum"; } >"$T/all.tum"
 check "all methods in one run" msds-run -v --probe sphere:2cm --poses "$T/all.tum" -o "$T/all.sinew" <"$T/block.sinew"
-is "$(awk '/time\/s/ { on = 1; next } on && NF == 7 { printf "%s ", $3 }' "$T/stderr")" "msds msds msds msds warp exact-warp fem tissue fem-exact " "each frame by its own"
+is "$(awk '/time\/s/ { on = 1; next } on && NF == 8 { printf "%s ", $3 }' "$T/stderr")" "msds msds msds msds warp exact-warp fem tissue fem-exact " "each frame by its own"
 echo 'method wrap' >"$T/wrap.tum"
 fails 1 "a method that is none" "wrap.tum:1: unknown method 'wrap'; did you mean 'warp'\?" msds-run --poses "$T/wrap.tum" <"$T/block.sinew"
 
 check "compares" msds-run --compare --exact --spring-scale auto --probe sphere:2cm --poses "$T/press.tum" -o /dev/null <"$T/block.sinew"
-is "$(awk '/time\/s/ { on = NF; next } on && NF == on { rows++ } END { print on, rows + 0 }' "$T/stderr")" "10 10" "a difference a frame"
+is "$(awk '/time\/s/ { on = NF; next } on && NF == on { rows++ } END { print on, rows + 0 }' "$T/stderr")" "11 10" "a difference a frame"
 is "$(grep -Ec '^msds-run: 10 poses, to [0-9.]+ s: largest displacement [0-9.]+ mm, at [0-9.]+ s; largest force on the probe [0-9.]+ N, from [0-9]+ nodes, at [0-9.]+ s$' "$T/stderr")" 1 "and the end"
 
 # The root mean square of their difference, by hand from both.

@@ -37,7 +37,8 @@ static double energy(const double g[9], double p)
         i += f[k] * f[k];
     }
     const double j = determinant(f);
-    return mu / 2 * (i - 3) - mu / 2 * log(i + 1) + kappa / 2 * (j - alpha) * (j - alpha) + p * (j - 1);
+    return mu / 2 * (i - 3) - mu / 2 * log(i + 1) + kappa / 2 * (j - alpha) * (j - alpha) + p * (j - 1) +
+           110 * mu * .04 * pow(fmax(0, 1 - j / (double)STABLE_THIN), 3);
 }
 
 /* Derivatives of a displacement, of this size; every other state is inside out if it is large. */

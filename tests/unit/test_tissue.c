@@ -130,7 +130,8 @@ static void test_small(void)
     end(&s);
 }
 
-/* What holds the tissue stays; all else begins anywhere in a box about where it is at rest, or in one plane. */
+/* What holds the tissue stays; all else begins anywhere in a box about where it is at rest, or in one plane. From boxes
+ * as large as the block, it may come to a knot that is not inside out anywhere. */
 static void test_rest(double poisson, double box, bool flat)
 {
     const tets b = {{6, 6, 6}, {.05, .05, .05}, 3000, poisson, 1000, 2, false};
@@ -148,8 +149,10 @@ static void test_rest(double poisson, double box, bool flat)
     go(&r, &plan, 2, 300);
     for (int64_t i = 0; i < 3 * r.p.nodes; i++)
         most = fmax(most, fabs(r.u[i]));
-    ok(before > 100 && !inverted(&r) && most < 1e-5, "nu %g, %s: %d elements were inside out; at rest, to %.1e mm",
-       poisson, flat ? "flat" : "scrambled", before, 1e3 * most);
+    ok(before > 100 && !inverted(&r), "nu %g, %s: of %d elements that were inside out none is", poisson,
+       flat ? "flat" : "scrambled", before);
+    if (box < .02)
+        ok(most < 1e-5, "and it is at rest, to %.1e mm", 1e3 * most);
     end(&r);
 }
 
@@ -209,7 +212,9 @@ static void test_checkerboard(void)
         if (r.p.position[3 * n + 2] > .0399 && hypot(r.p.position[3 * n] - .021, r.p.position[3 * n + 1] - .034) < .011)
             c.list[c.count++] = (contact){.node = (int32_t)n, .way = {0, 0, -1}, .depth = .004};
     for (int i = 0; i < 60; i++) {
-        tissue_solve(&t, 20);
+        tissue_hold(&t);
+        for (int64_t k = 0; k < 20;)
+            k += tissue_step(&t, 20 - k);
         for (int64_t k = 0; k < c.count; k++)
             c.list[k].depth = 0;
     }
@@ -336,10 +341,11 @@ static void test_vectors(void)
 
 int main(void)
 {
-    static const double poisson[] = {.3, .45, .499}, box[] = {.05, .05, .02}; /* m */
+    static const double poisson[] = {.3, .45, .499};
     for (int i = 0; i < 3; i++) {
         test_patch(poisson[i]);
-        test_rest(poisson[i], box[i], false);
+        test_rest(poisson[i], .015, false);
+        test_rest(poisson[i], .05, false);
         test_rest(poisson[i], 0, true);
     }
     test_small();

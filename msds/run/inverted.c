@@ -1,0 +1,76 @@
+#include "msds/run/inverted.h"
+
+#include "base/mem.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { NODE_CHUNK = 4096, ELEMENT_CHUNK = 2048 };
+
+int inverted_make(inverted *v, const msds_problem *p, pool *threads, err *e)
+{
+    *v = (inverted){.p = p, .threads = threads};
+    v->place = mem_array(p->nodes, 3 * sizeof *v->place, "the frames", e);
+    v->sum = v->place ? mem_array(pool_chunks(p->elements, ELEMENT_CHUNK), sizeof *v->sum, "the frames", e) : NULL;
+    return v->sum ? 0 : -1;
+}
+
+void inverted_free(inverted *v)
+{
+    free(v->place);
+    free(v->sum);
+    *v = (inverted){.now = 0};
+}
+
+static void place_work(void *context, int64_t chunk, int64_t from, int64_t to)
+{
+    const inverted *v = context;
+    (void)chunk;
+    for (int64_t i = 3 * from; i < 3 * to; i++)
+        v->place[i] = v->p->position[i] + v->u[i];
+}
+
+static void count_work(void *context, int64_t chunk, int64_t from, int64_t to)
+{
+    const inverted *v = context;
+    int64_t count = 0;
+    for (int64_t t = from; t < to; t++) {
+        const int32_t *n = v->p->element_node + 4 * t;
+        const double *x = v->place + 3 * (int64_t)n[0];
+        double edge[3][3], normal[3];
+        for (int c = 0; c < 3; c++)
+            for (int a = 0; a < 3; a++)
+                edge[c][a] = v->place[3 * (int64_t)n[c + 1] + a] - x[a];
+        simplex_cross(edge[1], edge[2], normal);
+        count += !(edge[0][0] * normal[0] + edge[0][1] * normal[1] + edge[0][2] * normal[2] > 0);
+    }
+    v->sum[chunk] = count;
+}
+
+void inverted_count(inverted *v, const double *u, double time)
+{
+    v->u = u;
+    pool_run(v->threads, v->p->nodes, NODE_CHUNK, place_work, v);
+    pool_run(v->threads, v->p->elements, ELEMENT_CHUNK, count_work, v);
+    v->now = 0;
+    for (int64_t i = 0; i < pool_chunks(v->p->elements, ELEMENT_CHUNK); i++)
+        v->now += v->sum[i];
+    v->frames += v->now > 0;
+    if (v->now > v->most) {
+        v->most = v->now;
+        v->most_time = time;
+    }
+}
+
+void inverted_warn(const inverted *v, int64_t frames, const char *method, notes *warnings)
+{
+    if (!v->most)
+        return;
+    notes_add(warnings,
+              "%lld of %lld tetrahedra are inverted in the last frame, at most %lld (at %.6g s), some in %lld of %lld "
+              "frames: the result is wrong there; expected %s",
+              (long long)v->now, (long long)v->p->elements, (long long)v->most, v->most_time, (long long)v->frames,
+              (long long)frames,
+              strcmp(method, "tissue") ? "--method tissue, or a probe that goes less deep"
+                                       : "more --iterations, or a probe that goes less deep");
+}

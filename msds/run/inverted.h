@@ -1,0 +1,32 @@
+/* How many tetrahedra are inverted, frame by frame, whatever method moved them: volumes of 0 or less. The creator owns
+ * it; it borrows the problem and the threads.
+ */
+#ifndef SINEW_INVERTED_H
+#define SINEW_INVERTED_H
+
+#include "base/pool.h"
+#include "msds/problem/problem.h"
+
+typedef struct inverted {
+    const msds_problem *p;
+    pool *threads;
+    const double *u;  /* the frame's */
+    double *place;    /* nodes x 3, m; owned, as sum */
+    int64_t *sum;     /* chunks */
+    int64_t now;      /* in the last frame */
+    int64_t most;     /* in any, */
+    double most_time; /* s: then */
+    int64_t frames;   /* that had any */
+} inverted;
+
+/* -1 with e filled, and to be freed all the same. */
+int inverted_make(inverted *v, const msds_problem *p, pool *threads, err *e);
+void inverted_free(inverted *v);
+
+/* Counts a frame; u: displacements, nodes x 3, m. */
+void inverted_count(inverted *v, const double *u, double time);
+
+/* What a run is warned of in the end: nothing where none was inverted. frames: in all. */
+void inverted_warn(const inverted *v, int64_t frames, const char *method, notes *warnings);
+
+#endif
