@@ -43,7 +43,7 @@ INLINE void derive(const tissue_mesh *m, int64_t group, const lanes_field *f, v8
 INLINE void put_forces(const tissue_mesh *m, int64_t group, const v8 stress[9])
 {
     const v8 volume = load(m->volume + group * LANES);
-    float *to = m->force + 12 * group * LANES;
+    float *to = m->force + group * LANES;
     for (int a = 0; a < 3; a++) {
         v8 sum = {0};
         for (int c = 0; c < 3; c++) {
@@ -51,9 +51,9 @@ INLINE void put_forces(const tissue_mesh *m, int64_t group, const v8 stress[9])
             const v8 f = volume * ((stress[3 * a] * load(q) + stress[3 * a + 1] * load(q + LANES)) +
                                    stress[3 * a + 2] * load(q + 2 * LANES));
             sum += f;
-            store(to + (3 * (c + 1) + a) * LANES, f);
+            store(to + (3 * (c + 1) + a) * m->stride, f);
         }
-        store(to + a * LANES, -sum);
+        store(to + a * m->stride, -sum);
     }
 }
 
@@ -61,8 +61,10 @@ INLINE void put_forces(const tissue_mesh *m, int64_t group, const v8 stress[9])
 INLINE v8 point_mean(const tissue_mesh *m, int64_t group, const float *value)
 {
     v8 sum = {0};
-    for (int c = 0; c < 4 && m->points; c++)
-        sum += fetch(value, false, 0, m->point + (4 * group + c) * LANES);
+    for (int c = 0; c < 4 && m->points; c++) {
+        const int32_t first = m->first_point[4 * group + c];
+        sum += fetch(value, first != SELL_SCATTERED, first, m->point + (4 * group + c) * LANES);
+    }
     return .25f * load(m->counted + group * LANES) * sum;
 }
 
@@ -90,8 +92,14 @@ static void tissue_stress(const tissue_mesh *m, int64_t from, int64_t to)
 {
     for (int64_t i = from; i < to; i++) {
         v8 g[9], stress[9];
+        float *law = m->law + STABLE_NUMBERS * i * LANES;
         take_g(m, i, g);
-        stable_stress(g, load(m->mu + i * LANES), load(m->kappa + i * LANES), point_mean(m, i, m->pressure), stress);
+        const stable_state at = stable_stress(g, load(m->mu + i * LANES), load(m->kappa + i * LANES),
+                                              point_mean(m, i, m->pressure), stress);
+        store(law, at.a);
+        store(law + LANES, at.b);
+        store(law + 2 * LANES, at.q);
+        store(law + 3 * LANES, at.r);
         put_forces(m, i, stress);
     }
 }
@@ -114,12 +122,25 @@ static void tissue_tangent(const tissue_mesh *m, const lanes_field *way, int64_t
 {
     for (int64_t i = from; i < to; i++) {
         v8 g[9], d[9], stress[9];
+        const float *law = m->law + STABLE_NUMBERS * i * LANES;
+        const stable_state at = {load(law), load(law + LANES), load(law + 2 * LANES), load(law + 3 * LANES)};
         take_g(m, i, g);
         derive(m, i, way, d);
-        stable_tangent(g, d, load(m->mu + i * LANES), load(m->kappa + i * LANES), point_mean(m, i, m->pressure),
-                       point_mean(m, i, m->pressed), stress);
+        stable_tangent(g, d, &at, point_mean(m, i, m->pressed), stress);
         put_forces(m, i, stress);
     }
+}
+
+/* The lanes of a slot that have a summand. */
+INLINE i8 lanes_of(const tissue_sums *s, int64_t slot)
+{
+    const i8 bits = {1, 2, 4, 8, 16, 32, 64, 128};
+    return (bits & (int32_t)s->has[slot]) != 0;
+}
+
+INLINE v8 summand(const tissue_sums *s, int64_t slot, i8 has, const float *from)
+{
+    return (v8)((i8)fetch(from, s->first[slot] != SELL_SCATTERED, s->first[slot], s->list + slot * LANES) & has);
 }
 
 static void tissue_points(const tissue_mesh *m, float *value, int64_t from, int64_t to)
@@ -127,9 +148,11 @@ static void tissue_points(const tissue_mesh *m, float *value, int64_t from, int6
     for (int64_t i = from; i < to; i++) {
         v8 sum = {0};
         for (int64_t slot = m->swells.start[i]; slot < m->swells.start[i + 1]; slot++)
-            sum += fetch(m->swollen, false, 0, m->swells.list + slot * LANES);
-        const v8 held = value == m->pressure ? load(m->held + i * LANES) : (v8){0};
-        store(value + i * LANES, load(m->bulk + i * LANES) * sum + held);
+            sum += summand(&m->swells, slot, lanes_of(&m->swells, slot), m->swollen);
+        sum *= load(m->bulk + i * LANES);
+        if (value == m->pressure)
+            sum += load(m->held + i * LANES);
+        store(value + i * LANES, sum);
     }
 }
 
@@ -138,17 +161,21 @@ static double tissue_gather(const tissue_mesh *m, const lanes_field *way, lanes_
     double dot = 0;
     for (int64_t i = from; i < to; i++) {
         v8 sum[3] = {{0}, {0}, {0}};
-        for (int64_t slot = m->corners.start[i]; slot < m->corners.start[i + 1]; slot++)
+        for (int64_t slot = m->corners.start[i]; slot < m->corners.start[i + 1]; slot++) {
+            const i8 has = lanes_of(&m->corners, slot);
             for (int a = 0; a < 3; a++)
-                sum[a] += fetch(m->force + a * LANES, false, 0, m->corners.list + slot * LANES);
-        for (int l = 0; l < LANES; l++)
-            for (int a = 0; a < 3; a++)
-                sum[a][l] = m->inverse[i * LANES + l] > 0 ? sum[a][l] : 0;
-        for (int a = 0; a < 3; a++) {
-            store(y->x[a] + i * LANES, sum[a]);
-            for (int l = 0; l < LANES && way; l++)
-                dot += (double)way->x[a][i * LANES + l] * (double)sum[a][l];
+                sum[a] += summand(&m->corners, slot, has, m->force + a * m->stride);
         }
+        const i8 is_free = load(m->inverse + i * LANES) > 0;
+        v8 along = {0};
+        for (int a = 0; a < 3; a++) {
+            sum[a] = (v8)((i8)sum[a] & is_free);
+            store(y->x[a] + i * LANES, sum[a]);
+            if (way)
+                along += load(way->x[a] + i * LANES) * sum[a];
+        }
+        for (int l = 0; l < LANES; l++)
+            dot += (double)along[l];
     }
     return dot;
 }

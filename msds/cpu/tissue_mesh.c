@@ -7,7 +7,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { ROW_LEAST = 5 /* lanes that a group in a row has at least: the others stay empty */ };
+enum {
+    ROW_LEAST = 5,     /* lanes that a group in a row has at least: the others stay empty */
+    SUMS_ROW_LEAST = 3 /* and a slot of sums */
+};
 
 /* Elements keep so much of the law's kappa, in mu of linear elasticity: what they have at Poisson's ratio .3. What is
  * above that acts on the mean of J about points. */
@@ -231,10 +234,21 @@ static void fill_lane(const maker *k, int64_t g, int lane, const placed *from)
     m->kappa[g * LANES + lane] = (float)kept_of(s);
 }
 
+/* Whether the points of a corner of a group follow each other; those of empty lanes are any that there are. */
+static bool is_row(const maker *k, int64_t which)
+{
+    const int32_t *point = k->m->point + which * LANES, first = point[0];
+    bool is = first + LANES <= k->m->points;
+    for (int l = 0; l < LANES; l++)
+        is &= k->at[which / 4 * LANES + l] < 0 || point[l] == first + l;
+    return is;
+}
+
 static int fill_groups(const maker *k)
 {
     tissue_mesh *m = k->m;
     const int64_t lanes = m->groups * LANES;
+    m->stride = lanes + LANES;
     const char what[] = "the solver";
     if (!(m->node = mem_array(4 * lanes, sizeof *m->node, what, k->e)) ||
         !(m->point = mem_array(4 * lanes, sizeof *m->point, what, k->e)) ||
@@ -244,12 +258,16 @@ static int fill_groups(const maker *k)
         !(m->kappa = mem_array(lanes, sizeof *m->kappa, what, k->e)) ||
         !(m->counted = mem_array(lanes, sizeof *m->counted, what, k->e)) ||
         !(m->g = mem_array(9 * lanes, sizeof *m->g, what, k->e)) ||
-        !(m->force = mem_array(12 * (lanes + LANES), sizeof *m->force, what, k->e)) ||
-        !(m->swollen = mem_array(lanes + LANES, sizeof *m->swollen, what, k->e)))
+        !(m->law = mem_array(STABLE_NUMBERS * lanes, sizeof *m->law, what, k->e)) ||
+        !(m->first_point = mem_array(4 * m->groups, sizeof *m->first_point, what, k->e)) ||
+        !(m->force = mem_array(12 * m->stride, sizeof *m->force, what, k->e)) ||
+        !(m->swollen = mem_array(m->stride, sizeof *m->swollen, what, k->e)))
         return -1;
     for (int64_t i = 0; i < lanes; i++)
         if (k->at[i] >= 0)
             fill_lane(k, i / LANES, (int)(i % LANES), &k->list[k->at[i]]);
+    for (int64_t i = 0; i < 4 * m->groups; i++)
+        m->first_point[i] = m->points && is_row(k, i) ? m->point[i * LANES] : SELL_SCATTERED;
     return 0;
 }
 
@@ -275,61 +293,148 @@ static int make_inverse(const maker *k)
 
 /* ---- sums */
 
-/* Fills s with what `count` takers have, `at` the taker of each of `items`, and `place` where it stands; empty: what
- * lanes without any have. */
-static int make_sums(tissue_sums *s, int64_t takers, int64_t items, const int32_t *taker, const int32_t *where,
-                     int32_t empty, err *e)
+/* A summand of a lane of a slice. */
+typedef struct summand {
+    int32_t row; /* where it stands, less its lane: summands of a row have the same */
+    int32_t lane;
+} summand;
+
+static int by_row(const void *a, const void *b)
 {
+    const summand *x = a, *y = b;
+    if (x->row != y->row)
+        return x->row < y->row ? -1 : 1;
+    return (x->lane > y->lane) - (x->lane < y->lane);
+}
+
+/* Where slots are added, and how much room there is. */
+typedef struct adding {
+    tissue_sums *s;
+    int64_t room[3];
+    int32_t nothing; /* where zeros are */
+    err *e;
+} adding;
+
+static int64_t add_slot(adding *k, int32_t first)
+{
+    tissue_sums *s = k->s;
+    const int64_t at = s->slots;
+    if (MEM_ROOM(&s->first, &k->room[0], at + 1, "the solver", k->e) ||
+        MEM_ROOM(&s->has, &k->room[1], at + 1, "the solver", k->e) ||
+        MEM_ROOM(&s->list, &k->room[2], (at + 1) * LANES, "the solver", k->e))
+        return -1;
+    s->first[at] = first;
+    s->has[at] = 0;
+    for (int l = 0; l < LANES; l++)
+        s->list[at * LANES + l] = k->nothing;
+    return s->slots++;
+}
+
+static void put_summand(tissue_sums *s, int64_t slot, const summand *from)
+{
+    s->has[slot] |= (uint8_t)(1 << from->lane);
+    s->list[slot * LANES + from->lane] = from->row + from->lane;
+}
+
+/* The slots of a slice: rows first, then what is left over, of each lane in its order. */
+static int add_slice(adding *k, summand *list, int64_t count)
+{
+    const int64_t begin = k->s->slots;
+    int64_t left = 0, used[LANES] = {0};
+    qsort(list, (size_t)count, sizeof *list, by_row);
+    for (int64_t i = 0, end; i < count; i = end) {
+        for (end = i + 1; end < count && list[end].row == list[i].row;)
+            end++;
+        const int64_t slot = end - i >= SUMS_ROW_LEAST && list[i].row >= 0 ? add_slot(k, list[i].row) : -1;
+        if (k->e->status)
+            return -1;
+        for (int64_t n = i; n < end; n++)
+            if (slot >= 0)
+                put_summand(k->s, slot, &list[n]);
+            else
+                list[left++] = list[n];
+    }
+    const int64_t rows = k->s->slots - begin;
+    for (int64_t i = 0; i < left; i++) {
+        const int64_t slot = begin + rows + used[list[i].lane]++;
+        if (slot == k->s->slots && add_slot(k, SELL_SCATTERED) < 0)
+            return -1;
+        put_summand(k->s, slot, &list[i]);
+    }
+    return 0;
+}
+
+/* Sums for `takers`, of `items`: at[taker] those of each begin in `item`, which has where they stand. */
+static int make_sums(tissue_sums *s, int64_t takers, const int64_t *at, const int32_t *item, int32_t nothing, err *e)
+{
+    adding k = {.s = s, .nothing = nothing, .e = e};
+    summand *list = NULL;
+    int64_t room = 0;
+    int failed = 0;
     s->slices = (takers + LANES - 1) / LANES;
-    int32_t *count = mem_array(s->slices * LANES, sizeof *count, "the solver", e);
-    s->start = count ? mem_array(s->slices + 1, sizeof *s->start, "the solver", e) : NULL;
-    for (int64_t i = 0; s->start && i < items; i++)
-        count[taker[i]]++;
-    for (int64_t k = 0; s->start && k < s->slices; k++) {
-        int32_t most = 0;
-        for (int l = 0; l < LANES; l++)
-            most = count[k * LANES + l] > most ? count[k * LANES + l] : most;
-        s->start[k + 1] = s->start[k] + most;
+    s->start = mem_array(s->slices + 1, sizeof *s->start, "the solver", e);
+    for (int64_t i = 0; s->start && !failed && i < s->slices; i++) {
+        int64_t count = 0;
+        for (int32_t l = 0; l < LANES && i * LANES + l < takers && !failed; l++)
+            for (int64_t n = at[i * LANES + l]; n < at[i * LANES + l + 1] && !failed; n++) {
+                failed = MEM_ROOM(&list, &room, count + 1, "the solver", e);
+                if (!failed)
+                    list[count++] = (summand){item[n] - l, l};
+            }
+        failed = failed || add_slice(&k, list, count);
+        s->start[i + 1] = s->slots;
     }
-    s->slots = s->start ? s->start[s->slices] : 0;
-    s->list = s->start ? mem_array(s->slots * LANES, sizeof *s->list, "the solver", e) : NULL;
-    for (int64_t i = 0; s->list && i < s->slots * LANES; i++)
-        s->list[i] = empty;
-    if (s->list)
-        memset(count, 0, (size_t)(s->slices * LANES) * sizeof *count);
-    for (int64_t i = 0; s->list && i < items; i++) {
-        const int32_t own = taker[i];
-        s->list[(s->start[own / LANES] + count[own]++) * LANES + own % LANES] = where[i];
-    }
-    free(count);
-    return s->list ? 0 : -1;
+    free(list);
+    return s->start && !failed ? 0 : -1;
+}
+
+/* Sorts what the corners give by who takes it: taker of each, which has `takers`, and where it stands. */
+static int sort_items(int64_t takers, int64_t items, const int32_t *taker, const int32_t *where, int64_t **at,
+                      int32_t **item, err *e)
+{
+    *at = mem_array(takers + 2, sizeof **at, "the solver", e);
+    *item = *at ? mem_array(items, sizeof **item, "the solver", e) : NULL;
+    if (!*item)
+        return -1;
+    for (int64_t i = 0; i < items; i++)
+        (*at)[taker[i] + 2]++;
+    for (int64_t t = 2; t <= takers; t++)
+        (*at)[t] += (*at)[t - 1];
+    for (int64_t i = 0; i < items; i++)
+        (*item)[(*at)[taker[i] + 1]++] = where[i];
+    return 0;
+}
+
+/* of: of each corner of each lane, in m->node or m->point; apart: how far the corners of an element stand apart. */
+static int sum_corners(const maker *k, tissue_sums *s, int64_t takers, const int32_t *of, int64_t apart)
+{
+    const tissue_mesh *m = k->m;
+    const int64_t corners = 4 * k->p->elements;
+    int32_t *taker = mem_array(corners, sizeof *taker, "the solver", k->e);
+    int32_t *where = taker ? mem_array(corners, sizeof *where, "the solver", k->e) : NULL;
+    int32_t *item = NULL;
+    int64_t *at = NULL, n = 0;
+    for (int64_t i = 0; where && i < m->groups * LANES; i++)
+        for (int c = 0; c < 4 && k->at[i] >= 0; c++, n++) {
+            taker[n] = of[(4 * (i / LANES) + c) * LANES + i % LANES];
+            where[n] = (int32_t)(c * apart + i);
+        }
+    const int failed = !where || sort_items(takers, n, taker, where, &at, &item, k->e) ||
+                       make_sums(s, takers, at, item, (int32_t)(m->groups * LANES), k->e);
+    free(taker);
+    free(where);
+    free(item);
+    free(at);
+    return failed ? -1 : 0;
 }
 
 static int make_all_sums(const maker *k)
 {
     tissue_mesh *m = k->m;
-    const int64_t corners = 4 * k->p->elements;
-    int32_t *taker = mem_array(corners, sizeof *taker, "the solver", k->e);
-    int32_t *where = taker ? mem_array(corners, sizeof *where, "the solver", k->e) : NULL;
-    int32_t *point = where ? mem_array(corners, sizeof *point, "the solver", k->e) : NULL;
-    int32_t *swell = point ? mem_array(corners, sizeof *swell, "the solver", k->e) : NULL;
-    int64_t n = 0;
-    for (int64_t i = 0; swell && i < m->groups * LANES; i++)
-        for (int c = 0; c < 4 && k->at[i] >= 0; c++, n++) {
-            const int64_t g = i / LANES, lane = i % LANES;
-            taker[n] = m->node[(4 * g + c) * LANES + lane];
-            point[n] = m->point[(4 * g + c) * LANES + lane];
-            where[n] = (int32_t)(12 * g * LANES + 3 * c * LANES + lane);
-            swell[n] = (int32_t)i;
-        }
-    const int32_t last = (int32_t)(m->groups * LANES);
-    const int failed = !swell || make_sums(&m->corners, k->s->nodes, n, taker, where, 12 * last, k->e) ||
-                       (m->points && make_sums(&m->swells, m->points, n, point, swell, last, k->e));
-    free(taker);
-    free(where);
-    free(point);
-    free(swell);
-    return failed ? -1 : 0;
+    return sum_corners(k, &m->corners, k->s->nodes, m->node, 3 * m->stride) ||
+                   (m->points && sum_corners(k, &m->swells, m->points, m->point, 0))
+               ? -1
+               : 0;
 }
 
 int tissue_mesh_make(tissue_mesh *m, const msds_problem *p, const sell *s, err *e)
@@ -350,6 +455,14 @@ int tissue_mesh_make(tissue_mesh *m, const msds_problem *p, const sell *s, err *
     return failed ? -1 : 0;
 }
 
+static void sums_free(tissue_sums *s)
+{
+    free(s->start);
+    free(s->first);
+    free(s->has);
+    free(s->list);
+}
+
 void tissue_mesh_free(tissue_mesh *m)
 {
     free(m->first);
@@ -363,10 +476,10 @@ void tissue_mesh_free(tissue_mesh *m)
     free(m->keep);
     free(m->held);
     free(m->inverse);
-    free(m->corners.start);
-    free(m->corners.list);
-    free(m->swells.start);
-    free(m->swells.list);
+    sums_free(&m->corners);
+    sums_free(&m->swells);
+    free(m->law);
+    free(m->first_point);
     free(m->g);
     free(m->counted);
     free(m->force);
@@ -379,7 +492,7 @@ void tissue_mesh_free(tissue_mesh *m)
 int64_t tissue_mesh_bytes(const tissue_mesh *m)
 {
     const int64_t lanes = m->groups * LANES;
-    return lanes * 4 * (4 + 4 + 9 + 3 + 9 + 12 + 2) + m->groups * 16 + m->points * 20 +
-           (m->corners.slots + m->swells.slots) * LANES * 4 + m->corners.slices * (LANES * 4 + 8) +
+    return lanes * 4 * (4 + 4 + 9 + 3 + 9 + 12 + 2 + STABLE_NUMBERS) + m->groups * 32 + m->points * 20 +
+           (m->corners.slots + m->swells.slots) * (LANES * 4 + 5) + m->corners.slices * (LANES * 4 + 8) +
            m->swells.slices * 8;
 }

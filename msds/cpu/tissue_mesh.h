@@ -1,10 +1,11 @@
-/* Tetrahedra in groups of LANES, side by side, as the loops of lanes.h take them for the stable neo-Hookean law
+/* Tetrahedra side by side, LANES to a group, as the loops of lanes.h take them for the stable neo-Hookean law
  * (msds/problem/stable.h), and how their forces go to nodes. In single precision, but for what is made once.
  *
- * In a lattice, the corners of a group's elements mostly follow each other in the solver's order of nodes, so that they
- * are loaded in a row:
+ * In a lattice, elements of one shape follow each other as the solver's nodes do, so that both their corners and, for a
+ * slice of nodes, what pulls these are loaded in a row:
  *
- *     group i:  | corner 0: first ... first + 7 | corner 1: ... | corner 2 | corner 3 |
+ *     nodes      | 40 41 42 43 44 45 46 47 | 48 ...     corner c of elements 16 to 23
+ *     elements       16 17 18 19 20 21 22 | 23 ...      stands at nodes 41 to 48
  *
  * Each element pulls its corners (force), and has a volume that changes (swollen); nodes and points of pressure sum
  * these by lists of where they stand, in one order. The points of pressure are the nodes, once for each material about
@@ -17,11 +18,13 @@
 
 enum { TISSUE_CHUNK = 32 /* groups that a thread takes at a time; results do not depend on it */ };
 
-/* Sums of what stands in an array, eight to a slice: place `slot` of lane l is list[slot * LANES + l]. */
+/* Sums of what stands in an array, eight to a slice; a slot is one summand of each. */
 typedef struct tissue_sums {
     int64_t slices, slots;
     int64_t *start; /* slices + 1 */
-    int32_t *list;  /* slots x LANES */
+    int32_t *first; /* slots: where lane 0's summand stands, if the others' follow; else SELL_SCATTERED */
+    uint8_t *has;   /* slots: bits of the lanes that have one */
+    int32_t *list;  /* slots x LANES: where they stand; what is not there stands where zeros are */
 } tissue_sums;
 
 typedef struct tissue_mesh {
@@ -29,6 +32,7 @@ typedef struct tissue_mesh {
     int32_t *first;         /* groups x 4: where lane 0's corner stands, if the others' follow; else SELL_SCATTERED */
     int32_t *node;          /* groups x 4 x LANES: corners, in the solver's order */
     int32_t *point;         /* groups x 4 x LANES */
+    int32_t *first_point;   /* groups x 4: as first */
     float *gradient;        /* groups x 9 x LANES, 1/m: of corners 1 to 3; 0 where a lane has no element */
     float *volume;          /* groups x LANES, m3 */
     float *mu, *kappa;      /* groups x LANES, Pa: the law's */
@@ -38,10 +42,11 @@ typedef struct tissue_mesh {
     tissue_sums corners;    /* by nodes, into force */
     tissue_sums swells;     /* by points, into swollen */
     float *g;               /* groups x 9 x LANES: the displacement's derivatives */
-    float *force;           /* (groups + 1) x 12 x LANES, N: corner by corner; the last are 0 */
+    float *law;             /* groups x STABLE_NUMBERS x LANES: what the tangent has there (stable.h) */
     float *counted;         /* groups x LANES: how much of an element counts about points (stable.h) */
-    float *swollen;         /* (groups + 1) x LANES, m3: a quarter of what the volume changed by, as it counts; the last
-                               are 0 */
+    int64_t stride;         /* (groups + 1) x LANES; the last LANES are 0: */
+    float *force;           /* 12 x stride, N: components of corners, corner by corner */
+    float *swollen;         /* stride, m3: a quarter of what the volume changed by, as it counts */
     float *held, *pressure; /* points, Pa */
     float *pressed;         /* points, Pa: what that changes by along a direction */
 } tissue_mesh;

@@ -91,45 +91,47 @@ STABLE_FUNCTION stable_number stable_lacking(stable_number swelling)
     return stable_larger(STABLE_THIN - 1 - swelling, swelling * 0);
 }
 
+/* What a stress has worked out, that the tangent takes: a, b/2 = mu/(I + 1)^2, q, and r, the bulk stiffness. */
+typedef struct stable_state {
+    stable_number a, b, q, r;
+} stable_state;
+
+enum { STABLE_NUMBERS = 4 };
+
 /* The first Piola-Kirchhoff stress a F + q cof F, with a = mu - mu/(I + 1), q = kappa (J - alpha) + p, less
  * what keeps it from being flat. */
-STABLE_FUNCTION void stable_stress(const stable_number g[9], stable_number mu, stable_number kappa, stable_number p,
-                                   stable_number to[9])
+STABLE_FUNCTION stable_state stable_stress(const stable_number g[9], stable_number mu, stable_number kappa,
+                                           stable_number p, stable_number to[9])
 {
     stable_number c[9];
     stable_cofactors(g, c);
     const stable_number trace = g[0] + g[4] + g[8], more = 2 * trace + stable_dot(g, g); /* I - 3 */
-    const stable_number a = mu - mu / (more + 4), swelling = stable_swelling(g, c);
-    const stable_number lacking = stable_lacking(swelling);
-    const stable_number pressure = kappa * swelling + p - mu * STABLE_STIFF / STABLE_THIN * lacking * lacking;
-    const stable_number q = pressure - mu * 3 / 4, both = mu * more / (4 * (more + 4)) + pressure; /* a + q */
+    const stable_number share = mu / (more + 4), a = mu - share, swelling = stable_swelling(g, c);
+    const stable_number lacking = stable_lacking(swelling), stiff = mu * STABLE_STIFF / STABLE_THIN * lacking;
+    const stable_number pressure = kappa * swelling + p - stiff * lacking;
+    const stable_number q = pressure - mu * 3 / 4, both = share * more / 4 + pressure; /* a + q */
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++)
             to[3 * i + j] = a * g[3 * i + j] + q * (c[3 * i + j] - g[3 * j + i]);
     for (int i = 0; i < 3; i++)
         to[4 * i] += both + q * trace;
+    return (stable_state){a, share / (more + 4), q, kappa + 2 * stiff};
 }
 
 /* What the stress changes by along d (the derivatives of a displacement), where p changes by more. */
-STABLE_FUNCTION void stable_tangent(const stable_number g[9], const stable_number d[9], stable_number mu,
-                                    stable_number kappa, stable_number p, stable_number more, stable_number to[9])
+STABLE_FUNCTION void stable_tangent(const stable_number g[9], const stable_number d[9], const stable_state *at,
+                                    stable_number more, stable_number to[9])
 {
-    stable_number c[9], f[9], of_f[9], along[9];
-    stable_cofactors(g, c);
-    const stable_number swelling = stable_swelling(g, c), lacking = stable_lacking(swelling);
-    const stable_number stiff = mu * STABLE_STIFF / STABLE_THIN * lacking;
-    const stable_number q = kappa * swelling + p - stiff * lacking - mu * 3 / 4;
+    stable_number f[9], c[9], along[9];
     for (int i = 0; i < 9; i++)
         f[i] = g[i];
     for (int i = 0; i < 9; i += 4)
         f[i] += 1;
-    stable_cofactors(f, of_f);
+    stable_cofactors(f, c);
     stable_cofactors_along(f, d, along);
-    const stable_number one = stable_dot(f, f) + 1, a = mu - mu / one;
-    const stable_number b = 2 * mu * stable_dot(f, d) / (one * one),
-                        r = (kappa + 2 * stiff) * stable_dot(of_f, d) + more;
+    const stable_number b = 2 * at->b * stable_dot(f, d), r = at->r * stable_dot(c, d) + more;
     for (int i = 0; i < 9; i++)
-        to[i] = (a * d[i] + b * f[i]) + (q * along[i] + r * of_f[i]);
+        to[i] = (at->a * d[i] + b * f[i]) + (at->q * along[i] + r * c[i]);
 }
 
 #endif
