@@ -60,9 +60,9 @@ typedef struct lanes {
     void (*forward)(double *y, const float *l, int64_t stride, int64_t rows, int64_t columns, const double *x);
     /* x (columns) -= the transpose of l times y (rows). */
     void (*backward)(double *x, const float *l, int64_t stride, int64_t rows, int64_t columns, const double *y);
-    /* Groups [from, to): m->g and m->swollen at u. */
+    /* Groups [from, to): m->g, m->counted and m->swollen at u. */
     void (*tissue_measure)(const tissue_mesh *m, const lanes_field *u, int64_t from, int64_t to);
-    /* Groups: m->force, of m->g and m->pressure. */
+    /* Groups: m->force and m->law, of m->g and m->pressure. */
     void (*tissue_stress)(const tissue_mesh *m, int64_t from, int64_t to);
     /* Groups: what m->swollen changes by along a way from m->g. */
     void (*tissue_swell)(const tissue_mesh *m, const lanes_field *way, int64_t from, int64_t to);

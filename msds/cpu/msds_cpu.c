@@ -319,7 +319,7 @@ static int step_tissue(cpu_state *s, int64_t count, err *e)
 {
     if (!s->tissue && make_tissue(s, e))
         return -1;
-    tissue_hold(s->tissue);
+    tissue_begin(s->tissue);
     while (count > 0) {
         find_contacts(s, NULL, s->p->options.penalty ? CONTACTS_PRESSED : CONTACTS_NEAR);
         count -= tissue_step(s->tissue, count);

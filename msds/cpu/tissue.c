@@ -128,47 +128,71 @@ static void copy(const tissue *t, lanes_field *to, const lanes_field *from)
     memcpy(to->memory, from->memory, 3 * (size_t)(t->pressed.s->nodes + 2 * LANES) * sizeof *to->memory);
 }
 
-static double dot(const tissue *t, const lanes_field *a, const lanes_field *b)
-{
-    double sum = 0;
-    for (int k = 0; k < 3; k++)
-        for (int64_t i = 0; i < t->pressed.s->nodes; i++)
-            sum += (double)a->x[k][i] * (double)b->x[k][i];
-    return sum;
-}
+/* What of all nodes' sums are told. */
+enum { SUM_LEFT, SUM_LOAD, SUM_PULL, SUMS };
 
-/* left = gravity, less what the elements pull with at u. Returns the square of its norm; *load: of gravity's. */
-static double find_left(tissue *t, double *load)
+static void left_work(void *context, int64_t chunk, int64_t from, int64_t to)
 {
-    double square = 0;
-    find_pulled(t, &t->left);
-    *load = t->pull = 0;
+    tissue *t = context;
+    double sum[SUMS] = {0};
     for (int a = 0; a < 3; a++)
-        for (int64_t i = 0; i < t->pressed.s->nodes; i++) {
-            const double weight = (double)t->weight->x[a][i], pulled = (double)t->left.x[a][i];
-            const double left = weight - pulled;
+        for (int64_t i = from * LANES; i < to * LANES; i++) {
+            const double weight = (double)t->weight->x[a][i], pulled = (double)t->left.x[a][i], left = weight - pulled;
             t->left.x[a][i] = (float)left;
-            square += left * left;
-            t->pull += pulled * pulled;
-            *load += weight * weight;
+            sum[SUM_LEFT] += left * left;
+            sum[SUM_LOAD] += weight * weight;
+            sum[SUM_PULL] += pulled * pulled;
         }
-    return square;
+    memcpy(t->sums + SUMS * chunk, sum, sizeof sum);
 }
 
-/* With the forces of penalties. */
-static void find_all_left(tissue *t)
+/* left = gravity, less what the elements pull with at u; with the squares of their norms. */
+static void find_left(tissue *t)
 {
-    double load;
-    find_left(t, &load);
-    pressed_push(&t->pressed, t->u, &t->left);
+    find_pulled(t, &t->left);
+    over_nodes(t, left_work);
+    for (int k = 0; k < SUMS; k++) {
+        const int64_t chunks = pool_chunks(t->pressed.s->count, SELL_CHUNK);
+        for (int64_t i = 0; i < chunks; i++)
+            t->sum[i] = t->sums[SUMS * i + k];
+        t->square[k] = sums_of(t->sum, chunks);
+    }
 }
 
-/* u = started + share * step. */
+static void gain_work(void *context, int64_t chunk, int64_t from, int64_t to)
+{
+    tissue *t = context;
+    double sum = 0;
+    for (int a = 0; a < 3; a++)
+        for (int64_t i = from * LANES; i < to * LANES; i++)
+            sum += (double)t->first.x[a][i] * (double)(t->step.x[a][i] - t->moved.x[a][i]);
+    t->sum[chunk] = sum;
+}
+
+static void slope_work(void *context, int64_t chunk, int64_t from, int64_t to)
+{
+    tissue *t = context;
+    double sum = 0;
+    for (int a = 0; a < 3; a++)
+        for (int64_t i = from * LANES; i < to * LANES; i++)
+            sum += (double)t->left.x[a][i] * (double)t->step.x[a][i];
+    t->sum[chunk] = sum;
+}
+
+static void go_work(void *context, int64_t chunk, int64_t from, int64_t to)
+{
+    tissue *t = context;
+    for (int a = 0; a < 3; a++)
+        for (int64_t i = from * LANES; i < to * LANES; i++)
+            t->u->x[a][i] = t->started.x[a][i] + t->alpha * t->step.x[a][i];
+    t->sum[chunk] = 0;
+}
+
+/* u = started + share step. */
 static void go(tissue *t, double share)
 {
-    for (int a = 0; a < 3; a++)
-        for (int64_t i = 0; i < t->pressed.s->nodes; i++)
-            t->u->x[a][i] = t->started.x[a][i] + (float)share * t->step.x[a][i];
+    t->alpha = (float)share;
+    over_nodes(t, go_work);
 }
 
 /* ---- contact */
@@ -364,17 +388,31 @@ static int64_t find_step(tissue *t, int64_t most)
     return count;
 }
 
+/* What is left times the step, but for what presses nodes on their planes, with what penalties push. */
+static double slope_of(tissue *t)
+{
+    double slope = over_nodes(t, slope_work);
+    for (int64_t i = 0; i < t->pressed.c->count; i++) {
+        const contact *c = &t->pressed.c->list[i];
+        const double along = pressed_along(&t->step, own_of(t, c), c);
+        if (c->active)
+            slope -= pressed_along(&t->left, own_of(t, c), c) * along;
+        else if (t->pressed.p->options.penalty)
+            slope += t->pressed.p->repulsion[c->node] * pressed_depth(&t->pressed, c, t->u) * along;
+    }
+    return slope;
+}
+
 /* Goes along the step as far as that does not overshoot by much: what is left pulls back along it by at most half of
  * the gain that was seen in what conjugate gradients added to it. */
 static void search(tissue *t)
 {
-    const double gain = dot(t, &t->first, &t->step) - dot(t, &t->first, &t->moved);
+    const double gain = over_nodes(t, gain_work);
     double share = 1;
     for (int i = 0;; i++) {
         go(t, share);
-        find_all_left(t);
-        keep_out(t, &t->left, 0);
-        const double slope = dot(t, &t->left, &t->step);
+        find_left(t);
+        const double slope = slope_of(t);
         if (i == SEARCHES - 1 || slope >= -enough * gain)
             return;
         share *= isfinite(slope) ? fmin(fmax(gain / (gain - slope), .1), .7) : .1;
@@ -384,7 +422,7 @@ static void search(tissue *t)
 /* The forces of contact, and what is left then, over the load. */
 static void conclude(tissue *t)
 {
-    double load, square = find_left(t, &load);
+    double square = t->square[SUM_LEFT], load = t->square[SUM_LOAD];
     for (int64_t i = 0; i < t->pressed.c->count; i++) {
         contact *c = &t->pressed.c->list[i];
         const double held = c->active ? fmax(-pressed_along(&t->left, own_of(t, c), c), 0) : 0;
@@ -393,20 +431,21 @@ static void conclude(tissue *t)
                        : held;
         pressed_count(&t->pressed, c, &t->left, t->weight, &square, &load);
     }
-    load = fmax(fmax(load, t->pull), t->pressed.p->slight);
+    load = fmax(fmax(load, t->square[SUM_PULL]), t->pressed.p->slight);
     t->residual = load > 0 ? sqrt(fmax(0, square) / load) : 0;
 }
 
-/* Not of a state that is far from balance, whose pressures mean nothing. */
-void tissue_hold(tissue *t)
+/* Holds pressures, but not of a state that is far from balance, where they mean nothing. */
+void tissue_begin(tissue *t)
 {
     for (int64_t i = 0; i < t->m.points && t->residual < balanced; i++)
         t->m.held[i] = t->m.keep[i] * t->m.pressure[i];
+    find_left(t);
 }
 
 int64_t tissue_step(tissue *t, int64_t most)
 {
-    find_all_left(t);
+    pressed_push(&t->pressed, t->u, &t->left);
     copy(t, &t->started, t->u);
     const int64_t took = find_step(t, most);
     search(t);
@@ -422,10 +461,11 @@ int tissue_make(tissue *t, const msds_problem *p, const sell *s, contacts *c, co
     *t = (tissue){.pressed = {p, s, c}, .loops = loops, .threads = threads, .u = u, .weight = weight};
     lanes_field *fields[FIELDS] = {&t->step, &t->left, &t->way, &t->pulled, &t->started, &t->first, &t->moved};
     t->sum = mem_array(pool_chunks(s->count, SELL_CHUNK), sizeof *t->sum, "the solver", e);
-    for (int i = 0; t->sum && i < FIELDS; i++)
+    t->sums = mem_array(pool_chunks(s->count, SELL_CHUNK), SUMS * sizeof *t->sums, "the solver", e);
+    for (int i = 0; t->sum && t->sums && i < FIELDS; i++)
         if (lanes_field_make(fields[i], s->nodes, e))
             return -1;
-    return t->sum ? tissue_mesh_make(&t->m, p, s, e) : -1;
+    return t->sum && t->sums ? tissue_mesh_make(&t->m, p, s, e) : -1;
 }
 
 void tissue_reset(tissue *t)
@@ -441,6 +481,7 @@ void tissue_free(tissue *t)
     for (int i = 0; i < FIELDS; i++)
         lanes_field_free(fields[i]);
     free(t->sum);
+    free(t->sums);
     tissue_mesh_free(&t->m);
     *t = (tissue){.alpha = 0};
 }

@@ -23,13 +23,13 @@ typedef struct tissue {
     lanes_field *u, *weight; /* the state's: m, N */
     lanes_field step, left, way, pulled;
     lanes_field started, first, moved; /* u, left and step where a Newton step began */
-    double *sum;                       /* chunks */
+    double *sum, *sums;                /* chunks; chunks x 3 */
     float alpha, beta;
     const lanes_field *along; /* what loops work on */
     lanes_field *to;
     float *points;
-    double pull;     /* N2: the square of the elements' pulls */
-    double residual; /* what is left over the load or the pull, whichever is more */
+    double square[3]; /* N2: of what is left, of gravity, of what the elements pull with */
+    double residual;  /* what is left over the load or the pull, whichever is more */
 } tissue;
 
 /* -1 with e filled, and to be freed all the same. */
@@ -40,10 +40,10 @@ void tissue_free(tissue *t);
 void tissue_reset(tissue *t);
 int64_t tissue_bytes(const tissue *t);
 
-/* Holds the pressures of the frame before. */
-void tissue_hold(tissue *t);
+/* Begins a frame: holds the pressures of the one before, and finds what is left at u. */
+void tissue_begin(tissue *t);
 
-/* A step of Newton's, of so many iterations at most, with the contacts listed: those near the probe, or, for a penalty,
+/* From there, a step of Newton's, of so many iterations at most, with the contacts listed: those near the probe, or, for a penalty,
  * those in it. Fills their forces. Returns how many iterations it took. */
 int64_t tissue_step(tissue *t, int64_t most);
 

@@ -17,39 +17,45 @@ INLINE v8 stable_larger(v8 a, v8 b)
 
 #include "msds/problem/stable.h"
 
+/* The gradients of corners 1 to 3 of a group's elements. */
+INLINE void take_gradients(const tissue_mesh *m, int64_t group, v8 q[9])
+{
+    const float *from = m->gradient + m->shape[group];
+    if (m->shape[group + 1] - m->shape[group] == 9)
+        for (int k = 0; k < 9; k++)
+            q[k] = (v8){0} + from[k];
+    else
+        for (int k = 0; k < 9; k++)
+            q[k] = load(from + k * LANES);
+}
+
 /* The derivatives of a field of nodes in the elements of a group. */
-INLINE void derive(const tissue_mesh *m, int64_t group, const lanes_field *f, v8 d[9])
+INLINE void derive(const tissue_mesh *m, int64_t group, bool row, const lanes_field *f, const v8 q[9], v8 d[9])
 {
     v8 by[3][3];
     for (int a = 0; a < 3; a++) {
         v8 x[4];
         for (int c = 0; c < 4; c++) {
-            const int32_t first = m->first[4 * group + c];
-            x[c] = fetch(f->x[a], first != SELL_SCATTERED, first, m->node + (4 * group + c) * LANES);
+            x[c] = fetch(f->x[a], row, m->first[4 * group + c], m->node + (4 * group + c) * LANES);
         }
         for (int c = 0; c < 3; c++)
             by[c][a] = x[c + 1] - x[0];
     }
-    for (int b = 0; b < 3; b++) {
-        v8 q[3];
-        for (int c = 0; c < 3; c++)
-            q[c] = load(m->gradient + (9 * group + 3 * c + b) * LANES);
-        for (int a = 0; a < 3; a++)
-            d[3 * a + b] = (by[0][a] * q[0] + by[1][a] * q[1]) + by[2][a] * q[2];
-    }
+    for (int a = 0; a < 3; a++)
+        for (int b = 0; b < 3; b++)
+            d[3 * a + b] = (by[0][a] * q[b] + by[1][a] * q[3 + b]) + by[2][a] * q[6 + b];
 }
 
 /* What the corners pull with: volume times stress times gradient. */
-INLINE void put_forces(const tissue_mesh *m, int64_t group, const v8 stress[9])
+INLINE void put_forces(const tissue_mesh *m, int64_t group, const v8 q[9], const v8 stress[9])
 {
     const v8 volume = load(m->volume + group * LANES);
     float *to = m->force + group * LANES;
     for (int a = 0; a < 3; a++) {
         v8 sum = {0};
         for (int c = 0; c < 3; c++) {
-            const float *q = m->gradient + (9 * group + 3 * c) * LANES;
-            const v8 f = volume * ((stress[3 * a] * load(q) + stress[3 * a + 1] * load(q + LANES)) +
-                                   stress[3 * a + 2] * load(q + 2 * LANES));
+            const v8 f = volume * ((stress[3 * a] * q[3 * c] + stress[3 * a + 1] * q[3 * c + 1]) +
+                                   stress[3 * a + 2] * q[3 * c + 2]);
             sum += f;
             store(to + (3 * (c + 1) + a) * m->stride, f);
         }
@@ -58,28 +64,12 @@ INLINE void put_forces(const tissue_mesh *m, int64_t group, const v8 stress[9])
 }
 
 /* The mean of the points of a group's elements, as far as these count. */
-INLINE v8 point_mean(const tissue_mesh *m, int64_t group, const float *value)
+INLINE v8 point_mean(const tissue_mesh *m, int64_t group, bool row, const float *value)
 {
     v8 sum = {0};
-    for (int c = 0; c < 4 && m->points; c++) {
-        const int32_t first = m->first_point[4 * group + c];
-        sum += fetch(value, first != SELL_SCATTERED, first, m->point + (4 * group + c) * LANES);
-    }
+    for (int c = 0; c < 4 && m->points; c++)
+        sum += fetch(value, row, m->first_point[4 * group + c], m->point + (4 * group + c) * LANES);
     return .25f * load(m->counted + group * LANES) * sum;
-}
-
-static void tissue_measure(const tissue_mesh *m, const lanes_field *u, int64_t from, int64_t to)
-{
-    for (int64_t i = from; i < to; i++) {
-        v8 g[9], c[9];
-        derive(m, i, u, g);
-        stable_cofactors(g, c);
-        for (int k = 0; k < 9; k++)
-            store(m->g + (9 * i + k) * LANES, g[k]);
-        const v8 swelling = stable_swelling(g, c), counted = stable_counted(swelling);
-        store(m->counted + i * LANES, counted);
-        store(m->swollen + i * LANES, .25f * load(m->volume + i * LANES) * stable_swelling_counted(swelling, counted));
-    }
 }
 
 INLINE void take_g(const tissue_mesh *m, int64_t group, v8 g[9])
@@ -88,47 +78,84 @@ INLINE void take_g(const tissue_mesh *m, int64_t group, v8 g[9])
         g[k] = load(m->g + (9 * group + k) * LANES);
 }
 
+INLINE void measure_group(const tissue_mesh *m, int64_t i, bool row, const lanes_field *u)
+{
+    v8 q[9], g[9], c[9];
+    take_gradients(m, i, q);
+    derive(m, i, row, u, q, g);
+    stable_cofactors(g, c);
+    for (int k = 0; k < 9; k++)
+        store(m->g + (9 * i + k) * LANES, g[k]);
+    const v8 swelling = stable_swelling(g, c), counted = stable_counted(swelling);
+    store(m->counted + i * LANES, counted);
+    store(m->swollen + i * LANES, .25f * load(m->volume + i * LANES) * stable_swelling_counted(swelling, counted));
+}
+
+INLINE void stress_group(const tissue_mesh *m, int64_t i, bool row)
+{
+    v8 q[9], g[9], stress[9];
+    float *law = m->law + STABLE_NUMBERS * i * LANES;
+    take_gradients(m, i, q);
+    take_g(m, i, g);
+    const stable_state at = stable_stress(g, load(m->mu + i * LANES), load(m->kappa + i * LANES),
+                                          point_mean(m, i, row, m->pressure), stress);
+    store(law, at.a);
+    store(law + LANES, at.b);
+    store(law + 2 * LANES, at.q);
+    store(law + 3 * LANES, at.r);
+    put_forces(m, i, q, stress);
+}
+
+INLINE void swell_group(const tissue_mesh *m, int64_t i, bool row, const lanes_field *way)
+{
+    v8 q[9], g[9], d[9], c[9];
+    take_gradients(m, i, q);
+    take_g(m, i, g);
+    derive(m, i, row, way, q, d);
+    for (int k = 0; k < 9; k += 4)
+        g[k] += 1;
+    stable_cofactors(g, c);
+    store(m->swollen + i * LANES, .25f * load(m->volume + i * LANES) * load(m->counted + i * LANES) * stable_dot(c, d));
+}
+
+INLINE void tangent_group(const tissue_mesh *m, int64_t i, bool row, const lanes_field *way)
+{
+    v8 q[9], g[9], d[9], stress[9];
+    const float *law = m->law + STABLE_NUMBERS * i * LANES;
+    const stable_state at = {load(law), load(law + LANES), load(law + 2 * LANES), load(law + 3 * LANES)};
+    take_gradients(m, i, q);
+    take_g(m, i, g);
+    derive(m, i, row, way, q, d);
+    stable_tangent(g, d, &at, point_mean(m, i, row, m->pressed), stress);
+    put_forces(m, i, q, stress);
+}
+
+/* Groups whose corners are loaded in a row have code of their own, without a branch for each. */
+#define TISSUE_GROUPS(call_row, call_scattered)                                                                        \
+    for (int64_t i = from; i < to; i++)                                                                                \
+        if (m->first[4 * i] != SELL_SCATTERED)                                                                         \
+            call_row;                                                                                                  \
+        else                                                                                                           \
+            call_scattered
+
+static void tissue_measure(const tissue_mesh *m, const lanes_field *u, int64_t from, int64_t to)
+{
+    TISSUE_GROUPS(measure_group(m, i, true, u), measure_group(m, i, false, u));
+}
+
 static void tissue_stress(const tissue_mesh *m, int64_t from, int64_t to)
 {
-    for (int64_t i = from; i < to; i++) {
-        v8 g[9], stress[9];
-        float *law = m->law + STABLE_NUMBERS * i * LANES;
-        take_g(m, i, g);
-        const stable_state at = stable_stress(g, load(m->mu + i * LANES), load(m->kappa + i * LANES),
-                                              point_mean(m, i, m->pressure), stress);
-        store(law, at.a);
-        store(law + LANES, at.b);
-        store(law + 2 * LANES, at.q);
-        store(law + 3 * LANES, at.r);
-        put_forces(m, i, stress);
-    }
+    TISSUE_GROUPS(stress_group(m, i, true), stress_group(m, i, false));
 }
 
 static void tissue_swell(const tissue_mesh *m, const lanes_field *way, int64_t from, int64_t to)
 {
-    for (int64_t i = from; i < to; i++) {
-        v8 g[9], d[9], c[9];
-        take_g(m, i, g);
-        derive(m, i, way, d);
-        for (int k = 0; k < 9; k += 4)
-            g[k] += 1;
-        stable_cofactors(g, c);
-        store(m->swollen + i * LANES,
-              .25f * load(m->volume + i * LANES) * load(m->counted + i * LANES) * stable_dot(c, d));
-    }
+    TISSUE_GROUPS(swell_group(m, i, true, way), swell_group(m, i, false, way));
 }
 
 static void tissue_tangent(const tissue_mesh *m, const lanes_field *way, int64_t from, int64_t to)
 {
-    for (int64_t i = from; i < to; i++) {
-        v8 g[9], d[9], stress[9];
-        const float *law = m->law + STABLE_NUMBERS * i * LANES;
-        const stable_state at = {load(law), load(law + LANES), load(law + 2 * LANES), load(law + 3 * LANES)};
-        take_g(m, i, g);
-        derive(m, i, way, d);
-        stable_tangent(g, d, &at, point_mean(m, i, m->pressed), stress);
-        put_forces(m, i, stress);
-    }
+    TISSUE_GROUPS(tangent_group(m, i, true, way), tangent_group(m, i, false, way));
 }
 
 /* The lanes of a slot that have a summand. */
@@ -156,12 +183,22 @@ static void tissue_points(const tissue_mesh *m, float *value, int64_t from, int6
     }
 }
 
+enum { AHEAD = 12 }; /* slots: what they load comes from far */
+
+INLINE void fetch_ahead(const tissue_mesh *m, int64_t slot)
+{
+    const int32_t first = slot < m->corners.slots ? m->corners.first[slot] : SELL_SCATTERED;
+    for (int a = 0; a < 3 && first != SELL_SCATTERED; a++)
+        __builtin_prefetch(m->force + a * m->stride + first);
+}
+
 static double tissue_gather(const tissue_mesh *m, const lanes_field *way, lanes_field *y, int64_t from, int64_t to)
 {
     double dot = 0;
     for (int64_t i = from; i < to; i++) {
         v8 sum[3] = {{0}, {0}, {0}};
         for (int64_t slot = m->corners.start[i]; slot < m->corners.start[i + 1]; slot++) {
+            fetch_ahead(m, slot + AHEAD);
             const i8 has = lanes_of(&m->corners, slot);
             for (int a = 0; a < 3; a++)
                 sum[a] += summand(&m->corners, slot, has, m->force + a * m->stride);

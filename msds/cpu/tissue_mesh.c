@@ -226,12 +226,52 @@ static void fill_lane(const maker *k, int64_t g, int lane, const placed *from)
         m->node[(4 * g + c) * LANES + lane] = from->node[c];
         if (m->points)
             m->point[(4 * g + c) * LANES + lane] = k->point[4 * (int64_t)from->element + from->corner[c]];
-        for (int b = 0; c && b < 3; b++)
-            m->gradient[(9 * g + 3 * (c - 1) + b) * LANES + lane] = (float)s->gradient[from->corner[c]][b];
     }
     m->volume[g * LANES + lane] = (float)s->volume;
     m->mu[g * LANES + lane] = (float)STABLE_MU(s->mu);
     m->kappa[g * LANES + lane] = (float)kept_of(s);
+}
+
+/* The gradients of corners 1 to 3 of a group's elements: 0 where a lane is empty. */
+static void gradients_of(const maker *k, int64_t group, double to[9 * LANES])
+{
+    memset(to, 0, 9 * LANES * sizeof *to);
+    for (int l = 0; l < LANES; l++) {
+        const placed *from = k->at[group * LANES + l] >= 0 ? &k->list[k->at[group * LANES + l]] : NULL;
+        for (int c = 0; from && c < 3; c++)
+            for (int b = 0; b < 3; b++)
+                to[(3 * c + b) * LANES + l] = k->p->element[from->element].gradient[from->corner[c + 1]][b];
+    }
+}
+
+/* Whether elements are of one shape, but for what rounding left of it. Empty lanes have no volume, and may have any. */
+static bool is_one_shape(const maker *k, int64_t group, const double q[9 * LANES])
+{
+    double size = 0, off = 0;
+    for (int i = 0; i < 9 * LANES; i++) {
+        size = fmax(size, fabs(q[i]));
+        if (k->at[group * LANES + i % LANES] >= 0)
+            off = fmax(off, fabs(q[i] - q[i / LANES * LANES]));
+    }
+    return k->at[group * LANES] >= 0 && off <= 1e-9 * size;
+}
+
+static int fill_gradients(const maker *k)
+{
+    tissue_mesh *m = k->m;
+    int64_t room = 0;
+    m->shape = mem_array(m->groups + 1, sizeof *m->shape, "the solver", k->e);
+    for (int64_t g = 0; m->shape && g < m->groups; g++) {
+        double q[9 * LANES];
+        gradients_of(k, g, q);
+        const int each = is_one_shape(k, g, q) ? 1 : LANES;
+        m->shape[g + 1] = m->shape[g] + 9 * each;
+        if (MEM_ROOM(&m->gradient, &room, m->shape[g + 1], "the solver", k->e))
+            return -1;
+        for (int i = 0; i < 9 * each; i++)
+            m->gradient[m->shape[g] + i] = (float)q[each == 1 ? i * LANES : i];
+    }
+    return m->shape ? 0 : -1;
 }
 
 /* Whether the points of a corner of a group follow each other; those of empty lanes are any that there are. */
@@ -244,6 +284,19 @@ static bool is_row(const maker *k, int64_t which)
     return is;
 }
 
+/* A group whose points do not all follow each other is scattered. */
+static void link_points(const maker *k, int64_t group)
+{
+    tissue_mesh *m = k->m;
+    bool rows = m->first[4 * group] != SELL_SCATTERED;
+    for (int64_t c = 4 * group; c < 4 * group + 4; c++) {
+        m->first_point[c] = m->points ? m->point[c * LANES] : 0;
+        rows = rows && (!m->points || is_row(k, c));
+    }
+    for (int64_t c = 4 * group; c < 4 * group + 4; c++)
+        m->first[c] = rows ? m->first[c] : SELL_SCATTERED;
+}
+
 static int fill_groups(const maker *k)
 {
     tissue_mesh *m = k->m;
@@ -252,7 +305,6 @@ static int fill_groups(const maker *k)
     const char what[] = "the solver";
     if (!(m->node = mem_array(4 * lanes, sizeof *m->node, what, k->e)) ||
         !(m->point = mem_array(4 * lanes, sizeof *m->point, what, k->e)) ||
-        !(m->gradient = mem_array(9 * lanes, sizeof *m->gradient, what, k->e)) ||
         !(m->volume = mem_array(lanes, sizeof *m->volume, what, k->e)) ||
         !(m->mu = mem_array(lanes, sizeof *m->mu, what, k->e)) ||
         !(m->kappa = mem_array(lanes, sizeof *m->kappa, what, k->e)) ||
@@ -266,8 +318,8 @@ static int fill_groups(const maker *k)
     for (int64_t i = 0; i < lanes; i++)
         if (k->at[i] >= 0)
             fill_lane(k, i / LANES, (int)(i % LANES), &k->list[k->at[i]]);
-    for (int64_t i = 0; i < 4 * m->groups; i++)
-        m->first_point[i] = m->points && is_row(k, i) ? m->point[i * LANES] : SELL_SCATTERED;
+    for (int64_t i = 0; i < m->groups; i++)
+        link_points(k, i);
     return 0;
 }
 
@@ -445,7 +497,8 @@ int tissue_mesh_make(tissue_mesh *m, const msds_problem *p, const sell *s, err *
         err_set(e, NULL, 0, "%lld tetrahedra; expected at most %d for the method tissue", (long long)p->elements,
                 INT32_MAX / 20);
     else
-        failed = make_groups(&k) || make_points(&k) || fill_groups(&k) || make_inverse(&k) || make_all_sums(&k);
+        failed = make_groups(&k) || make_points(&k) || fill_groups(&k) || fill_gradients(&k) || make_inverse(&k) ||
+                 make_all_sums(&k);
     free(k.list);
     free(k.at);
     free(k.point);
@@ -481,6 +534,7 @@ void tissue_mesh_free(tissue_mesh *m)
     free(m->law);
     free(m->first_point);
     free(m->g);
+    free(m->shape);
     free(m->counted);
     free(m->force);
     free(m->swollen);
@@ -492,7 +546,7 @@ void tissue_mesh_free(tissue_mesh *m)
 int64_t tissue_mesh_bytes(const tissue_mesh *m)
 {
     const int64_t lanes = m->groups * LANES;
-    return lanes * 4 * (4 + 4 + 9 + 3 + 9 + 12 + 2 + STABLE_NUMBERS) + m->groups * 32 + m->points * 20 +
-           (m->corners.slots + m->swells.slots) * (LANES * 4 + 5) + m->corners.slices * (LANES * 4 + 8) +
-           m->swells.slices * 8;
+    return lanes * 4 * (4 + 4 + 3 + 9 + 12 + 2 + STABLE_NUMBERS) + m->shape[m->groups] * 4 + m->groups * 40 +
+           m->points * 20 + (m->corners.slots + m->swells.slots) * (LANES * 4 + 5) +
+           m->corners.slices * (LANES * 4 + 8) + m->swells.slices * 8;
 }

@@ -29,11 +29,13 @@ typedef struct tissue_sums {
 
 typedef struct tissue_mesh {
     int64_t groups, points; /* points: of pressure, filled up to slices; 0: none, as no law needs them */
-    int32_t *first;         /* groups x 4: where lane 0's corner stands, if the others' follow; else SELL_SCATTERED */
+    int32_t *first;         /* groups x 4: where lane 0's corner stands, if the others', and all points, follow; else
+                               SELL_SCATTERED */
     int32_t *node;          /* groups x 4 x LANES: corners, in the solver's order */
     int32_t *point;         /* groups x 4 x LANES */
-    int32_t *first_point;   /* groups x 4: as first */
-    float *gradient;        /* groups x 9 x LANES, 1/m: of corners 1 to 3; 0 where a lane has no element */
+    int32_t *first_point;   /* groups x 4: where lane 0's point stands */
+    int64_t *shape;         /* groups + 1: where the gradients of each begin in: */
+    float *gradient;        /* 1/m, of corners 1 to 3: 9 for a group of one shape, else 9 x LANES */
     float *volume;          /* groups x LANES, m3 */
     float *mu, *kappa;      /* groups x LANES, Pa: the law's */
     float *bulk;            /* points: what pressure changes by, over how the volume about them does, Pa/m3 */

@@ -212,7 +212,7 @@ static void test_checkerboard(void)
         if (r.p.position[3 * n + 2] > .0399 && hypot(r.p.position[3 * n] - .021, r.p.position[3 * n + 1] - .034) < .011)
             c.list[c.count++] = (contact){.node = (int32_t)n, .way = {0, 0, -1}, .depth = .004};
     for (int i = 0; i < 60; i++) {
-        tissue_hold(&t);
+        tissue_begin(&t);
         for (int64_t k = 0; k < 20;)
             k += tissue_step(&t, 20 - k);
         for (int64_t k = 0; k < c.count; k++)
