@@ -43,8 +43,8 @@ int64_t tissue_bytes(const tissue *t);
 /* Begins a frame: holds the pressures of the one before, and finds what is left at u. */
 void tissue_begin(tissue *t);
 
-/* From there, a step of Newton's, of so many iterations at most, with the contacts listed: those near the probe, or, for a penalty,
- * those in it. Fills their forces. Returns how many iterations it took. */
+/* From there, a step of Newton's, of so many iterations at most, with the contacts listed: those near the probe, or,
+ * for a penalty, those in it. Fills their forces. Returns how many iterations it took. */
 int64_t tissue_step(tissue *t, int64_t most);
 
 #endif

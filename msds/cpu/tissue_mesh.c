@@ -275,7 +275,7 @@ static int fill_gradients(const maker *k)
 }
 
 /* Whether the points of a corner of a group follow each other; those of empty lanes are any that there are. */
-static bool is_row(const maker *k, int64_t which)
+static bool are_points_in_row(const maker *k, int64_t which)
 {
     const int32_t *point = k->m->point + which * LANES, first = point[0];
     bool is = first + LANES <= k->m->points;
@@ -291,7 +291,7 @@ static void link_points(const maker *k, int64_t group)
     bool rows = m->first[4 * group] != SELL_SCATTERED;
     for (int64_t c = 4 * group; c < 4 * group + 4; c++) {
         m->first_point[c] = m->points ? m->point[c * LANES] : 0;
-        rows = rows && (!m->points || is_row(k, c));
+        rows = rows && (!m->points || are_points_in_row(k, c));
     }
     for (int64_t c = 4 * group; c < 4 * group + 4; c++)
         m->first[c] = rows ? m->first[c] : SELL_SCATTERED;
@@ -397,11 +397,12 @@ static int add_slice(adding *k, summand *list, int64_t count)
     for (int64_t i = 0, end; i < count; i = end) {
         for (end = i + 1; end < count && list[end].row == list[i].row;)
             end++;
-        const int64_t slot = end - i >= SUMS_ROW_LEAST && list[i].row >= 0 ? add_slot(k, list[i].row) : -1;
-        if (k->e->status)
+        const bool is_row = end - i >= SUMS_ROW_LEAST && list[i].row >= 0;
+        const int64_t slot = is_row ? add_slot(k, list[i].row) : 0;
+        if (slot < 0)
             return -1;
         for (int64_t n = i; n < end; n++)
-            if (slot >= 0)
+            if (is_row)
                 put_summand(k->s, slot, &list[n]);
             else
                 list[left++] = list[n];
