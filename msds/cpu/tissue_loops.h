@@ -134,9 +134,9 @@ INLINE void tangent_group(const tissue_mesh *m, int64_t i, bool row, const lanes
 #define TISSUE_GROUPS(call_row, call_scattered)                                                                        \
     for (int64_t i = from; i < to; i++)                                                                                \
         if (m->first[4 * i] != SELL_SCATTERED)                                                                         \
-            call_row;                                                                                                  \
+            (call_row);                                                                                                \
         else                                                                                                           \
-            call_scattered
+            (call_scattered)
 
 static void tissue_measure(const tissue_mesh *m, const lanes_field *u, int64_t from, int64_t to)
 {

@@ -297,7 +297,8 @@ int run_by(const run_setup *r, const run_live *live, int (*by)(run *n), run_end 
              .e = e};
     n.course.from = n.course.closest_at = n.plan.first;
     int result = prepare(&n) ? -1 : by(&n);
-    if (run_count_crowded(&n, result ? &(err){0} : e)) /* the first error is the one that is told */
+    err later = {0}; /* the first is the one that is told */
+    if (run_count_crowded(&n, result ? &later : e))
         result = -1;
     *end = end_of(&n);
     if (frame_writer_close(n.writer, e)) /* what is sound is written whatever happened then */
