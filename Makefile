@@ -30,7 +30,7 @@ COLLIDE = -lccd
 WEB = -lcivetweb -lturbojpeg
 
 TOOLS = voxelise attach bind tled-run msds-mesh msds-run us-import us-segment us-surface us-slice \
-	sinew sinew-materials sinew-deform sinew-results sinew-info sinew-diff sinew-distance sinew-export sinew-import sinew-render sinew-console
+	sinew sinew-materials sinew-deform sinew-results sinew-info sinew-diff sinew-distance sinew-poses sinew-export sinew-import sinew-render sinew-console
 
 # `make V=1` shows whole commands.
 ifeq ($(V),1)
@@ -163,6 +163,7 @@ SEGMENT_SRC := slice/contour/us-segment.c $(wildcard slice/contour/segment_*.c)
 SURFACE_SRC := slice/contour/us-surface.c $(wildcard slice/contour/contour*.c) slice/contour/cubes.c
 SLICE_SRC := $(wildcard slice/image/*.c)
 INFO_MODULES := $(wildcard common/inspect/info_*.c)
+PLAN_SRC := $(wildcard common/plan/*.c)
 DISTANCE_MODULES := $(wildcard common/inspect/distance_*.c)
 PRESET_MODULES := $(wildcard common/inspect/preset_*.c)
 EXPORT_MODULES := $(wildcard common/exchange/export_*.c)
@@ -192,6 +193,7 @@ $(eval $(call tool,sinew-results,common/results/sinew-results.c))
 $(eval $(call tool,sinew-info,common/inspect/sinew-info.c $(INFO_MODULES)))
 $(eval $(call tool,sinew-diff,common/inspect/sinew-diff.c))
 $(eval $(call tool,sinew-distance,common/inspect/sinew-distance.c $(DISTANCE_MODULES)))
+$(eval $(call tool,sinew-poses,$(PLAN_SRC)))
 $(eval $(call tool,sinew-export,common/exchange/sinew-export.c $(EXPORT_MODULES)))
 $(eval $(call tool,sinew-import,common/exchange/sinew-import.c $(IMPORT_MODULES)))
 $(eval $(call tool,sinew-render,common/render/sinew-render.c $(RENDER_MODULES),$$(EMBREE) $$(PICTURES)))

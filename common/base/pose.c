@@ -54,6 +54,30 @@ static void turned(const double quaternion[4], const double v[3], double to[3])
         to[a] = r[3 * a] * v[0] + r[3 * a + 1] * v[1] + r[3 * a + 2] * v[2];
 }
 
+/* From the quaternion's largest part, which is nowhere small. */
+void pose_axes(double axis[3][3], double turn[4])
+{
+    double trace = axis[0][0] + axis[1][1] + axis[2][2], length = 0;
+    int most = 0;
+    for (int i = 1; i < 3; i++)
+        most = axis[i][i] > axis[most][most] ? i : most;
+    if (trace > axis[most][most]) {
+        for (int i = 0; i < 3; i++)
+            turn[i] = axis[(i + 1) % 3][(i + 2) % 3] - axis[(i + 2) % 3][(i + 1) % 3];
+        turn[3] = 1 + trace;
+    } else {
+        int i = most, j = (i + 1) % 3, k = (i + 2) % 3;
+        turn[i] = 1 + axis[i][i] - axis[j][j] - axis[k][k];
+        turn[j] = axis[i][j] + axis[j][i];
+        turn[k] = axis[i][k] + axis[k][i];
+        turn[3] = axis[j][k] - axis[k][j];
+    }
+    for (int i = 0; i < 4; i++)
+        length += turn[i] * turn[i];
+    for (int i = 0; i < 4; i++)
+        turn[i] /= sqrt(length);
+}
+
 void pose_apply(const pose *p, const double from[3], double to[3])
 {
     double x[3];

@@ -33,6 +33,10 @@ int pose_is_unit(double length);
 /* The rotation as a matrix: row i, column j at 3 i + j. */
 void pose_matrix(const double quaternion[4], double r[9]);
 
+/* The unit quaternion that turns x, y and z to these three axes, which are of length 1, at right angles and
+ * right-handed. */
+void pose_axes(double axis[3][3], double turn[4]);
+
 /* A place in the body's frame as one of the frame that the pose is in, and the way back. to may be from. */
 void pose_apply(const pose *p, const double from[3], double to[3]);
 void pose_apply_inverse(const pose *p, const double from[3], double to[3]);

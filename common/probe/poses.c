@@ -109,30 +109,6 @@ static void turn_image(double axis[3][3])
     }
 }
 
-/* The quaternion of the rotation whose columns are the axes, from its largest part, which is nowhere small. */
-static void quaternion(double axis[3][3], double turn[4])
-{
-    double trace = axis[0][0] + axis[1][1] + axis[2][2], length = 0;
-    int most = 0;
-    for (int i = 1; i < 3; i++)
-        most = axis[i][i] > axis[most][most] ? i : most;
-    if (trace > axis[most][most]) {
-        for (int i = 0; i < 3; i++)
-            turn[i] = axis[(i + 1) % 3][(i + 2) % 3] - axis[(i + 2) % 3][(i + 1) % 3];
-        turn[3] = 1 + trace;
-    } else {
-        int i = most, j = (i + 1) % 3, k = (i + 2) % 3;
-        turn[i] = 1 + axis[i][i] - axis[j][j] - axis[k][k];
-        turn[j] = axis[i][j] + axis[j][i];
-        turn[k] = axis[i][k] + axis[k][i];
-        turn[3] = axis[j][k] - axis[k][j];
-    }
-    for (int i = 0; i < 4; i++)
-        length += turn[i] * turn[i];
-    for (int i = 0; i < 4; i++)
-        turn[i] /= sqrt(length);
-}
-
 static int next_frame(poses *p, poses_event *to, err *e)
 {
     double m[16], axis[3][3];
@@ -155,7 +131,7 @@ static int next_frame(poses *p, poses_event *to, err *e)
     }
     if (image)
         turn_image(axis);
-    quaternion(axis, to->at.quaternion);
+    pose_axes(axis, to->at.quaternion);
     to->kind = POSES_POSE;
     return check_time(p, to->time, to->line, e) ? -1 : 1;
 }

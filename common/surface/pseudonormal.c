@@ -193,16 +193,24 @@ static int64_t side_of(const triangle_hit *hit)
     return 3 * hit->triangle + (hit->feature - CLOSEST_AB);
 }
 
+/* Of any length. */
+static const double *normal_of(const pseudonormal *n, const triangle_hit *hit)
+{
+    if (hit->feature < CLOSEST_AB)
+        return n->at + 3 * (int64_t)place_of(n, hit);
+    return hit->feature < CLOSEST_INSIDE ? n->side + 3 * side_of(hit) : n->face + 3 * hit->triangle;
+}
+
 bool pseudonormal_outside(const pseudonormal *n, const triangle_hit *hit, const double q[3])
 {
     double away[3];
-    const double *normal = n->face + 3 * hit->triangle;
-    if (hit->feature < CLOSEST_AB)
-        normal = n->at + 3 * (int64_t)place_of(n, hit);
-    else if (hit->feature < CLOSEST_INSIDE)
-        normal = n->side + 3 * side_of(hit);
     minus(q, hit->point, away);
-    return dot(away, normal) >= 0;
+    return dot(away, normal_of(n, hit)) >= 0;
+}
+
+void pseudonormal_at(const pseudonormal *n, const triangle_hit *hit, double normal[3])
+{
+    memcpy(normal, normal_of(n, hit), 3 * sizeof *normal);
 }
 
 bool pseudonormal_on_border(const pseudonormal *n, const triangle_hit *hit)

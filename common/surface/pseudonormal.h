@@ -31,6 +31,9 @@ void pseudonormal_free(pseudonormal *n);
  * lies on the border. */
 bool pseudonormal_outside(const pseudonormal *n, const triangle_hit *hit, const double q[3]);
 
+/* The pseudonormal where the hit lies, of any length; 0 0 0 where there is no area. */
+void pseudonormal_at(const pseudonormal *n, const triangle_hit *hit, double normal[3]);
+
 /* Whether the hit lies on the border of an open surface. */
 bool pseudonormal_on_border(const pseudonormal *n, const triangle_hit *hit);
 

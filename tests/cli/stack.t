@@ -45,7 +45,7 @@ cp "$T/bind" "$T/in"
 same tled-run tled-run -q -d cpu -n 20 -c muscle_A=.4 --every 1e-3
 same msds-mesh msds-mesh -q
 cp "$T/msds-mesh" "$T/in"
-for method in msds 'fem --exact'; do
+for method in msds 'fem --exact' tissue; do
     # shellcheck disable=SC2086 # words
     same msds-run msds-run -q -d cpu --method $method --probe sphere:1cm --poses "$T/press.tum"
 done
@@ -55,6 +55,8 @@ same info sinew info
 same materials sinew materials
 same diff sinew diff "$T/tled-run" "$T/tled-run"
 same distance sinew distance --unit mm --both "$T/box.obj" "$T/box.obj"
+printf 'at vertex:1\npress 1mm .1\n' >"$T/plan"
+same poses sinew poses --surface "$T/box.obj" --unit mm "$T/plan"
 same export sinew export -f inp
 same render sinew render --size 180x120 --sheet rest,voxels,deformed
 same render-body sinew render --size 180x120 --show voxels,muscles,rigid --clear voxels --colour strain

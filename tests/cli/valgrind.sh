@@ -68,6 +68,9 @@ clean 0 sinew-deform sinew-deform -q "$T/box.obj"
 clean 0 sinew-info sinew-info --json
 clean 1 sinew-diff sinew-diff "$T/tled-run-double" "$T/tled-run-single"
 clean 0 sinew-distance sinew-distance -q --unit mm --both --points "$T/points" --region "all=$T/box.obj" "$T/box.obj" "$T/cube.obj"
+printf 'at surface:0,0,0\npress 1 .1\nmove vertex:1 into x columns y .1\n' >"$T/in"
+clean 0 sinew-poses sinew-poses -q --unit mm --surface "$T/box.obj"
+cp "$T/tled-run-double" "$T/in"
 for format in vtu inp msh obj 'model --text'; do
     # shellcheck disable=SC2086 # words
     clean 0 "sinew-export-${format%% *}" sinew-export -f $format
