@@ -14,6 +14,7 @@ typedef struct contact {
     double from[3]; /* m: its displacement where depth was found */
     double force;   /* N: what it is pushed with, along way */
     bool active;    /* tissue.h: it is held on its plane, */
+    bool meets;     /* or comes to it now */
     double pull;    /* N: by what would pull it off; below 0: press it on */
 } contact;
 

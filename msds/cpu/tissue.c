@@ -16,6 +16,9 @@ static const double forcing = .01, enough = .5;
 /* The length of a step along what is left: below 2 over the largest eigenvalue of the tangent times the inverse. */
 static const double fixed = .35;
 
+/* How far a node may go in a Newton step, in sides of a cell. */
+static const double stride = 2;
+
 /* A residual below which pressures are held for the next frame. */
 static const double balanced = .5;
 
@@ -169,6 +172,40 @@ static void gain_work(void *context, int64_t chunk, int64_t from, int64_t to)
     t->sum[chunk] = sum;
 }
 
+static void along_work(void *context, int64_t chunk, int64_t from, int64_t to)
+{
+    tissue *t = context;
+    double sum = 0;
+    for (int a = 0; a < 3; a++)
+        for (int64_t i = from * LANES; i < to * LANES; i++)
+            sum += (double)t->left.x[a][i] * (double)t->way.x[a][i];
+    t->sum[chunk] = sum;
+}
+
+static void most_work(void *context, int64_t chunk, int64_t from, int64_t to)
+{
+    tissue *t = context;
+    double most = 0;
+    for (int64_t i = from * LANES; i < to * LANES; i++) {
+        double square = 0;
+        for (int a = 0; a < 3; a++)
+            square += (double)t->step.x[a][i] * (double)t->step.x[a][i];
+        most = fmax(most, square);
+    }
+    t->sum[chunk] = most;
+}
+
+/* The most that a node goes in the step, m. */
+static double longest(tissue *t)
+{
+    const int64_t count = t->pressed.s->count;
+    double most = 0;
+    over_nodes(t, most_work);
+    for (int64_t i = 0; i < pool_chunks(count, SELL_CHUNK); i++)
+        most = fmax(most, t->sum[i]);
+    return sqrt(most);
+}
+
 static void slope_work(void *context, int64_t chunk, int64_t from, int64_t to)
 {
     tissue *t = context;
@@ -288,7 +325,7 @@ static double let_go(tissue *t, double off)
         pressed_add(&t->way, own, c, c->pull * (double)t->m.inverse[own]);
     }
     const double curvature = change_along(t);
-    return advance(t, curvature > 0 ? off / curvature : 1);
+    return advance(t, curvature > 0 ? off / curvature : fixed);
 }
 
 /* Holds a node on its plane. */
@@ -311,7 +348,8 @@ static void meet(tissue *t, double may)
     }
 }
 
-/* A step of fixed length along what is left, of which nodes that would go into the probe come to its surface. */
+/* A step of fixed length along what is left, of which nodes that would go into the probe come to its surface, and are
+ * held there; or a shorter one, where what is stiff asks for that. */
 static double expand(tissue *t)
 {
     t->beta = 0;
@@ -320,13 +358,17 @@ static double expand(tissue *t)
     for (int64_t i = 0; i < t->pressed.c->count; i++) {
         contact *c = &t->pressed.c->list[i];
         const double along = pressed_along(&t->way, own_of(t, c), c), most = -room_of(t, c) / fixed;
-        if (c->active || along >= most)
-            continue;
-        hold(t, c);
-        pressed_add(&t->way, own_of(t, c), c, most - along);
+        c->meets = !c->active && along < most;
+        if (c->meets)
+            pressed_add(&t->way, own_of(t, c), c, most - along);
     }
-    change_along(t);
-    return advance(t, fixed);
+    const double curvature = change_along(t), along = over_nodes(t, along_work);
+    const bool is_whole = !(curvature > 0) || fixed * curvature <= along;
+    const double free = advance(t, is_whole ? fixed : fmax(along, 0) / curvature);
+    for (int64_t i = 0; i < t->pressed.c->count && is_whole; i++)
+        if (t->pressed.c->list[i].meets)
+            hold(t, &t->pressed.c->list[i]);
+    return free;
 }
 
 /* The nodes that a probe moves go their way in the step; what that pulls leaves what is left. Returns r . r inverse. */
@@ -372,7 +414,7 @@ static int64_t find_step(tissue *t, int64_t most)
             const double curvature = change_along(t), may = feasible(t);
             if (!(curvature > 0) && count > 1)
                 break;
-            const double want = curvature > 0 ? free / curvature : 1, before = free;
+            const double want = curvature > 0 ? free / curvature : fixed, before = free;
             free = advance(t, fmin(want, may));
             t->beta = (float)(free / before);
             if (!(curvature > 0))
@@ -408,7 +450,7 @@ static double slope_of(tissue *t)
 static void search(tissue *t)
 {
     const double gain = over_nodes(t, gain_work);
-    double share = 1;
+    double share = fmin(1, stride * t->pressed.p->side / longest(t));
     for (int i = 0;; i++) {
         go(t, share);
         find_left(t);

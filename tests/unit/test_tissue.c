@@ -286,6 +286,38 @@ static void test_jump(void)
     end(&s);
 }
 
+/* What is all but empty under the probe is pressed nearly flat, and gets stiff; nothing is thrown away. */
+static void test_hollow(void)
+{
+    const tets b = {{13, 13, 9}, {.06, .06, .04}, 10000, .45, 1000, 2, false};
+    const msds_options o = tets_options();
+    msds_plan plan = tets_plan(MSDS_TISSUE), away = plan;
+    double most = 0, force = 0;
+    run r;
+    begin(&r, &b, &o);
+    for (int64_t t = 0; t < r.p.elements; t++) {
+        const int32_t *n = r.p.element_node + 4 * t;
+        double middle[3] = {0};
+        for (int c = 0; c < 4; c++)
+            for (int a = 0; a < 3; a++)
+                middle[a] += r.p.position[3 * (int64_t)n[c] + a] / 4;
+        if (hypot(middle[0] - .03, middle[2] - .024) < .009)
+            simplex_material(200, 0, &r.p.element[t]);
+    }
+    for (int i = 1; i <= 60; i++) {
+        tets_press(&plan, .015, .03, .03, .04 - .018 * i / 60);
+        go(&r, &plan, 2, 1);
+        most = fmax(most, r.reading.largest);
+    }
+    go(&r, &plan, 2, 60);
+    most = fmax(most, r.reading.largest);
+    force = -r.reading.force[2];
+    go(&r, &away, 2, 120);
+    ok(most < .02 && fabs(force) < 20, "over a hollow: nodes go %.3g mm at most, %.3g N", 1e3 * most, force);
+    ok(!inverted(&r) && r.reading.largest < 1e-5, "and come back, to %.1e mm", 1e3 * r.reading.largest);
+    end(&r);
+}
+
 static void test_bytes(void)
 {
     const tets b = {{9, 8, 7}, {.05, .05, .04}, 3000, .48, 1000, 2, false};
@@ -352,6 +384,7 @@ int main(void)
     test_checkerboard();
     test_points();
     test_jump();
+    test_hollow();
     test_bytes();
     test_vectors();
     return done_testing();
