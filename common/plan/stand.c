@@ -237,7 +237,7 @@ static void usual_columns(const double into[3], double columns[3])
 int stand_take(const stand *s, const keyfile *k, int at, int *next, pose *to, err *e)
 {
     spot here;
-    double into[3], columns[3];
+    double into[3] = {0}, columns[3] = {0};
     bool has_into = false, has_columns = false;
     if (at >= k->count)
         return keyfile_error(k, e, "%s without a place; expected X,Y,Z, voxel:I,J,K, surface:X,Y,Z or vertex:N",
