@@ -26,15 +26,15 @@ static const opt option_table[] = {
 static const opt_tool table = {
     .name = "sinew-poses",
     .command = "sinew poses",
-    .usage = "[options] [PLAN] > poses.tum",
+    .usage = "[options] plan > poses.tum\n[options] < plan > poses.tum",
     .purpose =
         "Writes the poses of a probe that is put on a voxel, a place or a skin, and is\npressed, swept, fanned or "
         "held from there: PLAN has a line for each.",
     .note = "Lines: at PLACE [into AXIS] [columns AXIS]; press DEPTH SECONDS;\n"
             "sweep X,Y,Z SECONDS; fan, rock or turn DEGREES SECONDS; move PLACE ... SECONDS;\n"
             "hold SECONDS; tremor LENGTH HZ.",
-    .example = "printf 'at surface:0,0,0\\npress 1cm 2\\n' | sinew poses --surface skin.obj --unit mm",
-    .operands = "[PLAN]",
+    .example = "sinew poses --surface skin.obj --unit mm plan > press.tum",
+    .operands = "PLAN",
     .operands_max = 1,
     .options = option_table,
 };
