@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { FIELDS = 7, SEARCHES = 6 /* steps that a line search tries at most */ };
+enum { FIELDS = 6, SEARCHES = 6 /* steps that a line search tries at most */ };
 
 /* Conjugate gradients stop at this share of the square of what was left, so that Newton's next step begins from a new
  * tangent; a line search at this share of the slope. */
@@ -162,26 +162,6 @@ static void find_left(tissue *t)
     }
 }
 
-static void gain_work(void *context, int64_t chunk, int64_t from, int64_t to)
-{
-    tissue *t = context;
-    double sum = 0;
-    for (int a = 0; a < 3; a++)
-        for (int64_t i = from * LANES; i < to * LANES; i++)
-            sum += (double)t->first.x[a][i] * (double)(t->step.x[a][i] - t->moved.x[a][i]);
-    t->sum[chunk] = sum;
-}
-
-static void along_work(void *context, int64_t chunk, int64_t from, int64_t to)
-{
-    tissue *t = context;
-    double sum = 0;
-    for (int a = 0; a < 3; a++)
-        for (int64_t i = from * LANES; i < to * LANES; i++)
-            sum += (double)t->left.x[a][i] * (double)t->way.x[a][i];
-    t->sum[chunk] = sum;
-}
-
 static void most_work(void *context, int64_t chunk, int64_t from, int64_t to)
 {
     tissue *t = context;
@@ -206,14 +186,21 @@ static double longest(tissue *t)
     return sqrt(most);
 }
 
-static void slope_work(void *context, int64_t chunk, int64_t from, int64_t to)
+static void dot_work(void *context, int64_t chunk, int64_t from, int64_t to)
 {
     tissue *t = context;
     double sum = 0;
     for (int a = 0; a < 3; a++)
         for (int64_t i = from * LANES; i < to * LANES; i++)
-            sum += (double)t->left.x[a][i] * (double)t->step.x[a][i];
+            sum += (double)t->along->x[a][i] * (double)t->with->x[a][i];
     t->sum[chunk] = sum;
+}
+
+static double dot(tissue *t, const lanes_field *f, const lanes_field *with)
+{
+    t->along = f;
+    t->with = with;
+    return over_nodes(t, dot_work);
 }
 
 static void go_work(void *context, int64_t chunk, int64_t from, int64_t to)
@@ -362,7 +349,7 @@ static double expand(tissue *t)
         if (c->meets)
             pressed_add(&t->way, own_of(t, c), c, most - along);
     }
-    const double curvature = change_along(t), along = over_nodes(t, along_work);
+    const double curvature = change_along(t), along = dot(t, &t->left, &t->way);
     const bool is_whole = !(curvature > 0) || fixed * curvature <= along;
     const double free = advance(t, is_whole ? fixed : fmax(along, 0) / curvature);
     for (int64_t i = 0; i < t->pressed.c->count && is_whole; i++)
@@ -383,14 +370,17 @@ static double begin_step(tissue *t)
     return advance(t, 1);
 }
 
-/* What is left where a Newton step begins, also of what would pull nodes off their planes. */
+/* What is left where a Newton step begins, also of what would pull nodes off their planes, and what that did to those
+ * that moved. */
 static void note_first(tissue *t)
 {
     copy(t, &t->first, &t->left);
-    copy(t, &t->moved, &t->step);
+    t->moved = 0;
     for (int64_t i = 0; i < t->pressed.c->count; i++) {
         const contact *c = &t->pressed.c->list[i];
-        pressed_add(&t->first, own_of(t, c), c, c->active ? fmax(c->pull, 0) : 0);
+        const double pull = c->active ? fmax(c->pull, 0) : 0;
+        pressed_add(&t->first, own_of(t, c), c, pull);
+        t->moved += pull * pressed_along(&t->step, own_of(t, c), c);
     }
 }
 
@@ -433,7 +423,7 @@ static int64_t find_step(tissue *t, int64_t most)
 /* What is left times the step, but for what presses nodes on their planes, with what penalties push. */
 static double slope_of(tissue *t)
 {
-    double slope = over_nodes(t, slope_work);
+    double slope = dot(t, &t->left, &t->step);
     for (int64_t i = 0; i < t->pressed.c->count; i++) {
         const contact *c = &t->pressed.c->list[i];
         const double along = pressed_along(&t->step, own_of(t, c), c);
@@ -449,7 +439,7 @@ static double slope_of(tissue *t)
  * the gain that was seen in what conjugate gradients added to it. */
 static void search(tissue *t)
 {
-    const double gain = over_nodes(t, gain_work);
+    const double gain = dot(t, &t->first, &t->step) - t->moved;
     double share = fmin(1, stride * t->pressed.p->side / longest(t));
     for (int i = 0;; i++) {
         go(t, share);
@@ -501,7 +491,7 @@ int tissue_make(tissue *t, const msds_problem *p, const sell *s, contacts *c, co
                 lanes_field *u, lanes_field *weight, err *e)
 {
     *t = (tissue){.pressed = {p, s, c}, .loops = loops, .threads = threads, .u = u, .weight = weight};
-    lanes_field *fields[FIELDS] = {&t->step, &t->left, &t->way, &t->pulled, &t->started, &t->first, &t->moved};
+    lanes_field *fields[FIELDS] = {&t->step, &t->left, &t->way, &t->pulled, &t->started, &t->first};
     t->sum = mem_array(pool_chunks(s->count, SELL_CHUNK), sizeof *t->sum, "the solver", e);
     t->sums = mem_array(pool_chunks(s->count, SELL_CHUNK), SUMS * sizeof *t->sums, "the solver", e);
     for (int i = 0; t->sum && t->sums && i < FIELDS; i++)
@@ -519,7 +509,7 @@ void tissue_reset(tissue *t)
 
 void tissue_free(tissue *t)
 {
-    lanes_field *fields[FIELDS] = {&t->step, &t->left, &t->way, &t->pulled, &t->started, &t->first, &t->moved};
+    lanes_field *fields[FIELDS] = {&t->step, &t->left, &t->way, &t->pulled, &t->started, &t->first};
     for (int i = 0; i < FIELDS; i++)
         lanes_field_free(fields[i]);
     free(t->sum);

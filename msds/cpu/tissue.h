@@ -22,10 +22,11 @@ typedef struct tissue {
     pool *threads;
     lanes_field *u, *weight; /* the state's: m, N */
     lanes_field step, left, way, pulled;
-    lanes_field started, first, moved; /* u, left and step where a Newton step began */
-    double *sum, *sums;                /* chunks; chunks x 3 */
+    lanes_field started, first; /* u and left where a Newton step began */
+    double moved;               /* J: what is left there times the way that nodes were moved */
+    double *sum, *sums;         /* chunks; chunks x 3 */
     float alpha, beta;
-    const lanes_field *along; /* what loops work on */
+    const lanes_field *along, *with; /* what loops work on */
     lanes_field *to;
     float *points;
     double square[3]; /* N2: of what is left, of gravity, of what the elements pull with */
