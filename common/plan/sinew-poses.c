@@ -1,5 +1,4 @@
 /* sinew-poses: a file of poses from a plan of what a probe does, a line each. */
-#include "base/outs.h"
 #include "cli/tool.h"
 #include "plan/plan.h"
 

@@ -1,10 +1,8 @@
 #include "plan/stand.h"
 
-#include "base/near.h"
 #include "surface/scale.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* ---- what there is */
@@ -79,7 +77,7 @@ static double dot(const double a[3], const double b[3])
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/* Whether it has a length; then made 1. */
+/* Makes its length 1. Returns whether it had one. */
 static bool unit(double v[3])
 {
     const double most = fmax(fabs(v[0]), fmax(fabs(v[1]), fabs(v[2])));

@@ -11,7 +11,7 @@
 #include "surface/trimesh.h"
 #include "volume/volume.h"
 
-/* What places and axes are told by. */
+/* The volume and the surface that a plan names places and axes of. */
 typedef struct stand {
     num_unit unit; /* of lengths without a suffix; 0: m */
     bool has_volume, has_surface;

@@ -24,14 +24,11 @@ static inline void pressed_add(lanes_field *f, int32_t own, const contact *c, do
         f->x[a][own] += (float)(amount * c->way[a]);
 }
 
-/* Prescribed: moves nodes in f by what they have to go; returns how many. */
-static inline int64_t pressed_move(const pressed *k, lanes_field *f)
+/* Prescribed: moves nodes in f by what they have to go. */
+static inline void pressed_move(const pressed *k, lanes_field *f)
 {
-    if (k->p->options.penalty)
-        return 0;
-    for (int64_t i = 0; i < k->c->count; i++)
+    for (int64_t i = 0; i < k->c->count && !k->p->options.penalty; i++)
         pressed_add(f, k->s->own_node[k->c->list[i].node], &k->c->list[i], k->c->list[i].depth);
-    return k->c->count;
 }
 
 /* Prescribed: takes out of f what it has along the ways. */

@@ -83,11 +83,16 @@ static void over_groups(tissue *t, pool_work *work)
     pool_run(t->threads, t->m.groups, TISSUE_CHUNK, work, t);
 }
 
-static double over_nodes(tissue *t, pool_work *work)
+static void run_nodes(tissue *t, pool_work *work)
 {
-    const int64_t count = t->pressed.s->count;
-    pool_run(t->threads, count, SELL_CHUNK, work, t);
-    return sums_of(t->sum, pool_chunks(count, SELL_CHUNK));
+    pool_run(t->threads, t->pressed.s->count, SELL_CHUNK, work, t);
+}
+
+/* The sum of what the chunks leave in t->sum. */
+static double sum_nodes(tissue *t, pool_work *work)
+{
+    run_nodes(t, work);
+    return sums_of(t->sum, pool_chunks(t->pressed.s->count, SELL_CHUNK));
 }
 
 static void over_points(tissue *t, float *to)
@@ -104,7 +109,7 @@ static void find_pulled(tissue *t, lanes_field *to)
     over_groups(t, stress_work);
     t->along = NULL;
     t->to = to;
-    over_nodes(t, gather_work);
+    run_nodes(t, gather_work);
 }
 
 /* pulled: what that changes by along a way from there. Returns way . pulled. */
@@ -116,7 +121,7 @@ static double find_change(tissue *t, const lanes_field *way)
         over_groups(t, swell_work);
     over_points(t, t->m.pressed);
     over_groups(t, tangent_work);
-    return over_nodes(t, gather_work);
+    return sum_nodes(t, gather_work);
 }
 
 /* ---- fields */
@@ -153,7 +158,7 @@ static void left_work(void *context, int64_t chunk, int64_t from, int64_t to)
 static void find_left(tissue *t)
 {
     find_pulled(t, &t->left);
-    over_nodes(t, left_work);
+    run_nodes(t, left_work);
     for (int k = 0; k < SUMS; k++) {
         const int64_t chunks = pool_chunks(t->pressed.s->count, SELL_CHUNK);
         for (int64_t i = 0; i < chunks; i++)
@@ -180,7 +185,7 @@ static double longest(tissue *t)
 {
     const int64_t count = t->pressed.s->count;
     double most = 0;
-    over_nodes(t, most_work);
+    run_nodes(t, most_work);
     for (int64_t i = 0; i < pool_chunks(count, SELL_CHUNK); i++)
         most = fmax(most, t->sum[i]);
     return sqrt(most);
@@ -200,23 +205,23 @@ static double dot(tissue *t, const lanes_field *f, const lanes_field *with)
 {
     t->along = f;
     t->with = with;
-    return over_nodes(t, dot_work);
+    return sum_nodes(t, dot_work);
 }
 
 static void go_work(void *context, int64_t chunk, int64_t from, int64_t to)
 {
-    tissue *t = context;
+    const tissue *t = context;
+    (void)chunk;
     for (int a = 0; a < 3; a++)
         for (int64_t i = from * LANES; i < to * LANES; i++)
             t->u->x[a][i] = t->started.x[a][i] + t->alpha * t->step.x[a][i];
-    t->sum[chunk] = 0;
 }
 
 /* u = started + share step. */
 static void go(tissue *t, double share)
 {
     t->alpha = (float)share;
-    over_nodes(t, go_work);
+    run_nodes(t, go_work);
 }
 
 /* ---- contact */
@@ -232,20 +237,24 @@ static double room_of(const tissue *t, const contact *c)
     return pressed_along(&t->step, own_of(t, c), c) - c->depth;
 }
 
-/* Those inside the probe have to come out in the step; those that it pressed before stay at its surface. */
-static void begin_contacts(tissue *t)
+/* Those inside the probe have to come out in the step; those that it pressed before stay at its surface. Returns
+ * whether there are any. */
+static bool begin_contacts(tissue *t)
 {
+    bool any = false;
     for (int64_t i = 0; i < t->pressed.c->count; i++) {
         contact *c = &t->pressed.c->list[i];
         c->active = !t->pressed.p->options.penalty && (c->depth > 0 || c->force > 0);
         c->pull = 0;
         if (c->active)
             pressed_add(&t->step, own_of(t, c), c, c->depth);
+        any |= c->active;
     }
+    return any;
 }
 
-/* Of nodes that are held, takes out of f what it has along the normals of their planes; share times that joins what
- * pulls them. */
+/* Removes from f, at nodes that are held, its component along the normal of their plane, and adds share times that
+ * component to what pulls the node. */
 static void keep_out(const tissue *t, lanes_field *f, double share)
 {
     for (int64_t i = 0; i < t->pressed.c->count; i++) {
@@ -290,7 +299,7 @@ static double advance(tissue *t, double alpha)
 {
     keep_out(t, &t->pulled, -alpha);
     t->alpha = (float)alpha;
-    return over_nodes(t, advance_work);
+    return sum_nodes(t, advance_work);
 }
 
 static double change_along(tissue *t)
@@ -340,7 +349,7 @@ static void meet(tissue *t, double may)
 static double expand(tissue *t)
 {
     t->beta = 0;
-    over_nodes(t, turn_work);
+    run_nodes(t, turn_work);
     keep_out(t, &t->way, 0);
     for (int64_t i = 0; i < t->pressed.c->count; i++) {
         contact *c = &t->pressed.c->list[i];
@@ -362,10 +371,12 @@ static double expand(tissue *t)
 static double begin_step(tissue *t)
 {
     clear(t, &t->step);
-    begin_contacts(t);
+    const bool moves = begin_contacts(t);
     keep_out(t, &t->left, 1);
     copy(t, &t->way, &t->step);
-    change_along(t);
+    clear(t, &t->pulled);
+    if (moves)
+        change_along(t);
     clear(t, &t->step);
     return advance(t, 1);
 }
@@ -399,7 +410,7 @@ static int64_t find_step(tissue *t, int64_t most)
             free = let_go(t, off);
             t->beta = 0;
         } else {
-            over_nodes(t, turn_work);
+            run_nodes(t, turn_work);
             keep_out(t, &t->way, 0);
             const double curvature = change_along(t), may = feasible(t);
             if (!(curvature > 0) && count > 1)

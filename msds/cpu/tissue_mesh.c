@@ -88,12 +88,17 @@ static int64_t run_from(const maker *k, int64_t at)
     return count;
 }
 
+/* Lanes that groups have at most: each in a row is filled by ROW_LEAST at least, and all others but one are full. */
+static int64_t lanes_most(const maker *k)
+{
+    return 2 * k->p->elements + LANES;
+}
+
 /* Groups in a row first, in the order of the list, then what is left over. */
 static void group(maker *k)
 {
     int64_t rows = 0, filled = 0;
-    const int64_t most = 2 * k->p->elements;
-    for (int64_t i = 0; i < most; i++)
+    for (int64_t i = 0; i < lanes_most(k); i++)
         k->at[i] = -1;
     for (int64_t i = 0, count; i < k->p->elements; i += count) {
         count = run_from(k, i);
@@ -115,8 +120,8 @@ static int make_groups(maker *k)
 {
     const int64_t elements = k->p->elements;
     k->list = mem_array(elements, sizeof *k->list, "the solver", k->e);
-    k->at = mem_array(2 * elements + LANES, sizeof *k->at, "the solver", k->e);
-    k->m->first = mem_array(4 * (elements / ROW_LEAST + elements / LANES + 2), sizeof *k->m->first, "the solver", k->e);
+    k->at = mem_array(lanes_most(k), sizeof *k->at, "the solver", k->e);
+    k->m->first = mem_array(4 * (lanes_most(k) / LANES), sizeof *k->m->first, "the solver", k->e);
     if (!k->list || !k->at || !k->m->first)
         return -1;
     for (int64_t t = 0; t < elements; t++)
@@ -244,7 +249,8 @@ static void gradients_of(const maker *k, int64_t group, double to[9 * LANES])
     }
 }
 
-/* Whether elements are of one shape, but for what rounding left of it. Empty lanes have no volume, and may have any. */
+/* Tells whether the elements of a group are of one shape, to rounding. Empty lanes have no volume, so any shape will
+ * do. */
 static bool is_one_shape(const maker *k, int64_t group, const double q[9 * LANES])
 {
     double size = 0, off = 0;

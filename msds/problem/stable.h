@@ -79,7 +79,7 @@ STABLE_FUNCTION stable_number stable_counted(stable_number swelling)
     return -stable_larger(-stable_larger((swelling + 1) * STABLE_COUNTED, none), none - 1);
 }
 
-/* What the mean is of, in place of J - 1: its derivative is `counted`. */
+/* The mean is taken of this in place of J - 1. Its derivative by J is `counted`. */
 STABLE_FUNCTION stable_number stable_swelling_counted(stable_number swelling, stable_number counted)
 {
     return counted * (swelling + 1) + (1 - counted * counted) / (2 * STABLE_COUNTED) - 1;

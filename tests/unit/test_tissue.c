@@ -255,11 +255,22 @@ static void test_points(void)
     for (int64_t i = 0; i < m.points; i++)
         used += m.bulk[i] > 0;
     ok(used == 125 + 25, "two volumes that meet in a layer of 25 nodes: %lld points of 125 nodes", (long long)used);
-    double volume_of = 0;
+    double volume_of = 0, off = 0;
     for (int64_t i = 0; i < m.groups * LANES; i++)
         volume_of += (double)m.volume[i];
     near_(volume_of, .04 * .04 * .04, 1e-9, "all elements are in groups, once each");
     tissue_mesh_free(&m);
+    for (r.p.elements = 1; r.p.elements < 20; r.p.elements++) {
+        double want = 0, got = 0;
+        tets_must(!tissue_mesh_make(&m, &r.p, &order, &e), &e);
+        for (int64_t t = 0; t < r.p.elements; t++)
+            want += r.p.element[t].volume;
+        for (int64_t i = 0; i < m.groups * LANES; i++)
+            got += (double)m.volume[i];
+        off = fmax(off, fabs(got - want) / want);
+        tissue_mesh_free(&m);
+    }
+    ok(off < 1e-6, "also of 1 to 19 elements: %.1e off", off);
     sell_free(&order);
     end(&r);
 }
