@@ -8,8 +8,7 @@
 #include <string.h>
 
 enum {
-    ROW_LEAST = 5,     /* lanes that a group in a row has at least: the others stay empty */
-    SUMS_ROW_LEAST = 3 /* and a slot of sums */
+    ROW_LEAST = 5 /* lanes that a group in a row has at least: the others stay empty */
 };
 
 /* Elements keep so much of the law's kappa, in mu of linear elasticity: what they have at Poisson's ratio .3. What is
@@ -351,119 +350,6 @@ static int make_inverse(const maker *k)
 
 /* ---- sums */
 
-/* A summand of a lane of a slice. */
-typedef struct summand {
-    int32_t row; /* where it stands, less its lane: summands of a row have the same */
-    int32_t lane;
-} summand;
-
-static int by_row(const void *a, const void *b)
-{
-    const summand *x = a, *y = b;
-    if (x->row != y->row)
-        return x->row < y->row ? -1 : 1;
-    return (x->lane > y->lane) - (x->lane < y->lane);
-}
-
-/* Where slots are added, and how much room there is. */
-typedef struct adding {
-    tissue_sums *s;
-    int64_t room[3];
-    int32_t nothing; /* where zeros are */
-    err *e;
-} adding;
-
-static int64_t add_slot(adding *k, int32_t first)
-{
-    tissue_sums *s = k->s;
-    const int64_t at = s->slots;
-    if (MEM_ROOM(&s->first, &k->room[0], at + 1, "the solver", k->e) ||
-        MEM_ROOM(&s->has, &k->room[1], at + 1, "the solver", k->e) ||
-        MEM_ROOM(&s->list, &k->room[2], (at + 1) * LANES, "the solver", k->e))
-        return -1;
-    s->first[at] = first;
-    s->has[at] = 0;
-    for (int l = 0; l < LANES; l++)
-        s->list[at * LANES + l] = k->nothing;
-    return s->slots++;
-}
-
-static void put_summand(tissue_sums *s, int64_t slot, const summand *from)
-{
-    s->has[slot] |= (uint8_t)(1 << from->lane);
-    s->list[slot * LANES + from->lane] = from->row + from->lane;
-}
-
-/* The slots of a slice: rows first, then what is left over, of each lane in its order. */
-static int add_slice(adding *k, summand *list, int64_t count)
-{
-    const int64_t begin = k->s->slots;
-    int64_t left = 0, used[LANES] = {0};
-    qsort(list, (size_t)count, sizeof *list, by_row);
-    for (int64_t i = 0, end; i < count; i = end) {
-        for (end = i + 1; end < count && list[end].row == list[i].row;)
-            end++;
-        const bool is_row = end - i >= SUMS_ROW_LEAST && list[i].row >= 0;
-        const int64_t slot = is_row ? add_slot(k, list[i].row) : 0;
-        if (slot < 0)
-            return -1;
-        for (int64_t n = i; n < end; n++)
-            if (is_row)
-                put_summand(k->s, slot, &list[n]);
-            else
-                list[left++] = list[n];
-    }
-    const int64_t rows = k->s->slots - begin;
-    for (int64_t i = 0; i < left; i++) {
-        const int64_t slot = begin + rows + used[list[i].lane]++;
-        if (slot == k->s->slots && add_slot(k, SELL_SCATTERED) < 0)
-            return -1;
-        put_summand(k->s, slot, &list[i]);
-    }
-    return 0;
-}
-
-/* Sums for `takers`, of `items`: at[taker] those of each begin in `item`, which has where they stand. */
-static int make_sums(tissue_sums *s, int64_t takers, const int64_t *at, const int32_t *item, int32_t nothing, err *e)
-{
-    adding k = {.s = s, .nothing = nothing, .e = e};
-    summand *list = NULL;
-    int64_t room = 0;
-    int failed = 0;
-    s->slices = (takers + LANES - 1) / LANES;
-    s->start = mem_array(s->slices + 1, sizeof *s->start, "the solver", e);
-    for (int64_t i = 0; s->start && !failed && i < s->slices; i++) {
-        int64_t count = 0;
-        for (int32_t l = 0; l < LANES && i * LANES + l < takers && !failed; l++)
-            for (int64_t n = at[i * LANES + l]; n < at[i * LANES + l + 1] && !failed; n++) {
-                failed = MEM_ROOM(&list, &room, count + 1, "the solver", e);
-                if (!failed)
-                    list[count++] = (summand){item[n] - l, l};
-            }
-        failed = failed || add_slice(&k, list, count);
-        s->start[i + 1] = s->slots;
-    }
-    free(list);
-    return s->start && !failed ? 0 : -1;
-}
-
-/* Sorts what the corners give by who takes it: taker of each, which has `takers`, and where it stands. */
-static int sort_items(int64_t takers, int64_t items, const int32_t *taker, const int32_t *where, int64_t **at,
-                      int32_t **item, err *e)
-{
-    *at = mem_array(takers + 2, sizeof **at, "the solver", e);
-    *item = *at ? mem_array(items, sizeof **item, "the solver", e) : NULL;
-    if (!*item)
-        return -1;
-    for (int64_t i = 0; i < items; i++)
-        (*at)[taker[i] + 2]++;
-    for (int64_t t = 2; t <= takers; t++)
-        (*at)[t] += (*at)[t - 1];
-    for (int64_t i = 0; i < items; i++)
-        (*item)[(*at)[taker[i] + 1]++] = where[i];
-    return 0;
-}
-
 /* of: of each corner of each lane, in m->node or m->point; apart: how far the corners of an element stand apart. */
 static int sum_corners(const maker *k, tissue_sums *s, int64_t takers, const int32_t *of, int64_t apart)
 {
@@ -471,19 +357,16 @@ static int sum_corners(const maker *k, tissue_sums *s, int64_t takers, const int
     const int64_t corners = 4 * k->p->elements;
     int32_t *taker = mem_array(corners, sizeof *taker, "the solver", k->e);
     int32_t *where = taker ? mem_array(corners, sizeof *where, "the solver", k->e) : NULL;
-    int32_t *item = NULL;
-    int64_t *at = NULL, n = 0;
+    int64_t n = 0;
     for (int64_t i = 0; where && i < m->groups * LANES; i++)
         for (int c = 0; c < 4 && k->at[i] >= 0; c++, n++) {
             taker[n] = of[(4 * (i / LANES) + c) * LANES + i % LANES];
             where[n] = (int32_t)(c * apart + i);
         }
-    const int failed = !where || sort_items(takers, n, taker, where, &at, &item, k->e) ||
-                       make_sums(s, takers, at, item, (int32_t)(m->groups * LANES), k->e);
+    const tissue_items items = {n, taker, where, (int32_t)(m->groups * LANES)};
+    const int failed = !where || tissue_sums_make(s, takers, &items, k->e);
     free(taker);
     free(where);
-    free(item);
-    free(at);
     return failed ? -1 : 0;
 }
 
@@ -515,14 +398,6 @@ int tissue_mesh_make(tissue_mesh *m, const msds_problem *p, const sell *s, err *
     return failed ? -1 : 0;
 }
 
-static void sums_free(tissue_sums *s)
-{
-    free(s->start);
-    free(s->first);
-    free(s->has);
-    free(s->list);
-}
-
 void tissue_mesh_free(tissue_mesh *m)
 {
     free(m->first);
@@ -536,8 +411,8 @@ void tissue_mesh_free(tissue_mesh *m)
     free(m->keep);
     free(m->held);
     free(m->inverse);
-    sums_free(&m->corners);
-    sums_free(&m->swells);
+    tissue_sums_free(&m->corners);
+    tissue_sums_free(&m->swells);
     free(m->law);
     free(m->first_point);
     free(m->g);

@@ -14,18 +14,10 @@
 #ifndef SINEW_TISSUE_MESH_H
 #define SINEW_TISSUE_MESH_H
 
+#include "msds/cpu/tissue_sums.h"
 #include "msds/problem/sell.h"
 
 enum { TISSUE_CHUNK = 32 /* groups that a thread takes at a time; results do not depend on it */ };
-
-/* Sums of what stands in an array, eight to a slice; a slot is one summand of each. */
-typedef struct tissue_sums {
-    int64_t slices, slots;
-    int64_t *start; /* slices + 1 */
-    int32_t *first; /* slots: where lane 0's summand stands, if the others' follow; else SELL_SCATTERED */
-    uint8_t *has;   /* slots: bits of the lanes that have one */
-    int32_t *list;  /* slots x LANES: where they stand; what is not there stands where zeros are */
-} tissue_sums;
 
 typedef struct tissue_mesh {
     int64_t groups, points; /* points: of pressure, filled up to slices; 0: none, as no law needs them */
