@@ -2,6 +2,7 @@
 
 #include "base/mem.h"
 #include "msds/cpu/sums.h"
+#include "msds/cpu/tissue_work.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -21,120 +22,6 @@ static const double stride = 2;
 
 /* A residual below which pressures are held for the next frame. */
 static const double balanced = .5;
-
-/* ---- loops */
-
-static void measure_work(void *context, int64_t chunk, int64_t from, int64_t to)
-{
-    const tissue *t = context;
-    (void)chunk;
-    t->loops->tissue_measure(&t->m, t->u, from, to);
-}
-
-static void stress_work(void *context, int64_t chunk, int64_t from, int64_t to)
-{
-    const tissue *t = context;
-    (void)chunk;
-    t->loops->tissue_stress(&t->m, from, to);
-}
-
-static void swell_work(void *context, int64_t chunk, int64_t from, int64_t to)
-{
-    const tissue *t = context;
-    (void)chunk;
-    t->loops->tissue_swell(&t->m, t->along, from, to);
-}
-
-static void tangent_work(void *context, int64_t chunk, int64_t from, int64_t to)
-{
-    const tissue *t = context;
-    (void)chunk;
-    t->loops->tissue_tangent(&t->m, t->along, from, to);
-}
-
-static void points_work(void *context, int64_t chunk, int64_t from, int64_t to)
-{
-    const tissue *t = context;
-    (void)chunk;
-    t->loops->tissue_points(&t->m, t->points, from, to);
-}
-
-static void gather_work(void *context, int64_t chunk, int64_t from, int64_t to)
-{
-    tissue *t = context;
-    t->sum[chunk] = t->loops->tissue_gather(&t->m, t->along, t->to, from, to);
-}
-
-static void advance_work(void *context, int64_t chunk, int64_t from, int64_t to)
-{
-    tissue *t = context;
-    t->sum[chunk] = t->loops->tissue_advance(&t->m, &t->step, &t->left, &t->way, &t->pulled, t->alpha, from, to);
-}
-
-static void turn_work(void *context, int64_t chunk, int64_t from, int64_t to)
-{
-    tissue *t = context;
-    (void)chunk;
-    t->loops->tissue_turn(&t->m, &t->way, &t->left, t->beta, from, to);
-}
-
-static void over_groups(tissue *t, pool_work *work)
-{
-    pool_run(t->threads, t->m.groups, TISSUE_CHUNK, work, t);
-}
-
-static void run_nodes(tissue *t, pool_work *work)
-{
-    pool_run(t->threads, t->pressed.s->count, SELL_CHUNK, work, t);
-}
-
-/* The sum of what the chunks leave in t->sum. */
-static double sum_nodes(tissue *t, pool_work *work)
-{
-    run_nodes(t, work);
-    return sums_of(t->sum, pool_chunks(t->pressed.s->count, SELL_CHUNK));
-}
-
-static void over_points(tissue *t, float *to)
-{
-    t->points = to;
-    pool_run(t->threads, t->m.points / LANES, SELL_CHUNK, points_work, t);
-}
-
-/* to: what the elements pull with at u. */
-static void find_pulled(tissue *t, lanes_field *to)
-{
-    over_groups(t, measure_work);
-    over_points(t, t->m.pressure);
-    over_groups(t, stress_work);
-    t->along = NULL;
-    t->to = to;
-    run_nodes(t, gather_work);
-}
-
-/* pulled: what that changes by along a way from there. Returns way . pulled. */
-static double find_change(tissue *t, const lanes_field *way)
-{
-    t->along = way;
-    t->to = &t->pulled;
-    if (t->m.points)
-        over_groups(t, swell_work);
-    over_points(t, t->m.pressed);
-    over_groups(t, tangent_work);
-    return sum_nodes(t, gather_work);
-}
-
-/* ---- fields */
-
-static void clear(const tissue *t, lanes_field *f)
-{
-    memset(f->memory, 0, 3 * (size_t)(t->pressed.s->nodes + 2 * LANES) * sizeof *f->memory);
-}
-
-static void copy(const tissue *t, lanes_field *to, const lanes_field *from)
-{
-    memcpy(to->memory, from->memory, 3 * (size_t)(t->pressed.s->nodes + 2 * LANES) * sizeof *to->memory);
-}
 
 /* What of all nodes' sums are told. */
 enum { SUM_LEFT, SUM_LOAD, SUM_PULL, SUMS };
@@ -157,8 +44,8 @@ static void left_work(void *context, int64_t chunk, int64_t from, int64_t to)
 /* left = gravity, less what the elements pull with at u; with the squares of their norms. */
 static void find_left(tissue *t)
 {
-    find_pulled(t, &t->left);
-    run_nodes(t, left_work);
+    tissue_pull(t, &t->left);
+    tissue_nodes(t, left_work);
     for (int k = 0; k < SUMS; k++) {
         const int64_t chunks = pool_chunks(t->pressed.s->count, SELL_CHUNK);
         for (int64_t i = 0; i < chunks; i++)
@@ -185,7 +72,7 @@ static double longest(tissue *t)
 {
     const int64_t count = t->pressed.s->count;
     double most = 0;
-    run_nodes(t, most_work);
+    tissue_nodes(t, most_work);
     for (int64_t i = 0; i < pool_chunks(count, SELL_CHUNK); i++)
         most = fmax(most, t->sum[i]);
     return sqrt(most);
@@ -205,7 +92,7 @@ static double dot(tissue *t, const lanes_field *f, const lanes_field *with)
 {
     t->along = f;
     t->with = with;
-    return sum_nodes(t, dot_work);
+    return tissue_nodes_sum(t, dot_work);
 }
 
 static void go_work(void *context, int64_t chunk, int64_t from, int64_t to)
@@ -221,7 +108,7 @@ static void go_work(void *context, int64_t chunk, int64_t from, int64_t to)
 static void go(tissue *t, double share)
 {
     t->alpha = (float)share;
-    run_nodes(t, go_work);
+    tissue_nodes(t, go_work);
 }
 
 /* ---- contact */
@@ -298,19 +185,18 @@ static double feasible(const tissue *t)
 static double advance(tissue *t, double alpha)
 {
     keep_out(t, &t->pulled, -alpha);
-    t->alpha = (float)alpha;
-    return sum_nodes(t, advance_work);
+    return tissue_advance(t, alpha);
 }
 
 static double change_along(tissue *t)
 {
-    return find_change(t, &t->way) + pressed_stiffen(&t->pressed, &t->way, &t->pulled);
+    return tissue_change(t, &t->way) + pressed_stiffen(&t->pressed, &t->way, &t->pulled);
 }
 
 /* Lets nodes go that are pulled off their planes: a step along their normals. off: of sum_off. */
 static double let_go(tissue *t, double off)
 {
-    clear(t, &t->way);
+    tissue_clear(t, &t->way);
     for (int64_t i = 0; i < t->pressed.c->count; i++) {
         contact *c = &t->pressed.c->list[i];
         const int32_t own = own_of(t, c);
@@ -348,8 +234,7 @@ static void meet(tissue *t, double may)
  * held there; or a shorter one, where what is stiff asks for that. */
 static double expand(tissue *t)
 {
-    t->beta = 0;
-    run_nodes(t, turn_work);
+    tissue_turn(t, 0);
     keep_out(t, &t->way, 0);
     for (int64_t i = 0; i < t->pressed.c->count; i++) {
         contact *c = &t->pressed.c->list[i];
@@ -370,14 +255,14 @@ static double expand(tissue *t)
 /* The nodes that a probe moves go their way in the step; what that pulls leaves what is left. Returns r . r inverse. */
 static double begin_step(tissue *t)
 {
-    clear(t, &t->step);
+    tissue_clear(t, &t->step);
     const bool moves = begin_contacts(t);
     keep_out(t, &t->left, 1);
-    copy(t, &t->way, &t->step);
-    clear(t, &t->pulled);
+    tissue_copy(t, &t->way, &t->step);
+    tissue_clear(t, &t->pulled);
     if (moves)
         change_along(t);
-    clear(t, &t->step);
+    tissue_clear(t, &t->step);
     return advance(t, 1);
 }
 
@@ -385,7 +270,7 @@ static double begin_step(tissue *t)
  * that moved. */
 static void note_first(tissue *t)
 {
-    copy(t, &t->first, &t->left);
+    tissue_copy(t, &t->first, &t->left);
     t->moved = 0;
     for (int64_t i = 0; i < t->pressed.c->count; i++) {
         const contact *c = &t->pressed.c->list[i];
@@ -401,23 +286,23 @@ static void note_first(tissue *t)
  * that way if it is the first. */
 static int64_t find_step(tissue *t, int64_t most)
 {
-    double free = begin_step(t), off = sum_off(t);
+    double free = begin_step(t), off = sum_off(t), beta = 0;
     const double least = forcing * (free + off);
     int64_t count = 1;
     note_first(t);
-    for (t->beta = 0; count < most && free + off > least; count++) {
+    for (; count < most && free + off > least; count++) {
         if (off > free) {
             free = let_go(t, off);
-            t->beta = 0;
+            beta = 0;
         } else {
-            run_nodes(t, turn_work);
+            tissue_turn(t, beta);
             keep_out(t, &t->way, 0);
             const double curvature = change_along(t), may = feasible(t);
             if (!(curvature > 0) && count > 1)
                 break;
             const double want = curvature > 0 ? free / curvature : fixed, before = free;
             free = advance(t, fmin(want, may));
-            t->beta = (float)(free / before);
+            beta = free / before;
             if (!(curvature > 0))
                 break;
             if (want > may) {
@@ -489,7 +374,7 @@ void tissue_begin(tissue *t)
 int64_t tissue_step(tissue *t, int64_t most)
 {
     pressed_push(&t->pressed, t->u, &t->left);
-    copy(t, &t->started, t->u);
+    tissue_copy(t, &t->started, t->u);
     const int64_t took = find_step(t, most);
     search(t);
     conclude(t);
