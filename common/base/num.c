@@ -240,6 +240,24 @@ double num_length_in(num_length length, num_unit unsuffixed, num_unit to)
     return length.value * from / to;
 }
 
+int num_pressure_of(const char *text, double *pressure)
+{
+    static const struct {
+        const char *name;
+        double pascals;
+    } known[] = {{"", 1}, {"Pa", 1}, {"kPa", 1e3}, {"mmHg", 133.322387415}};
+    const char *end = text + strlen(text), *stop;
+    double value;
+    if (num_scan(text, end, &stop, &value))
+        return -1;
+    for (size_t i = 0; i < sizeof known / sizeof *known; i++)
+        if (!strcmp(stop, known[i].name)) {
+            *pressure = value * known[i].pascals;
+            return isfinite(*pressure) ? 0 : -1;
+        }
+    return -1;
+}
+
 /* Copies the item of a comma list that begins at *p into item and steps past its comma; false at the end. One that
  * is too long for a number becomes "?", which is none. */
 static bool list_item(const char **p, char *item, size_t size)

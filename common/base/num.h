@@ -47,6 +47,9 @@ int num_length_of(const char *text, num_length *length);
  * rounding; two between inches and mm, cm or m. */
 double num_length_in(num_length length, num_unit unsuffixed, num_unit to);
 
+/* "10mmHg", "1.3kPa", "500Pa", "500": a pressure in Pa; the whole of text. Returns 0 or -1. */
+int num_pressure_of(const char *text, double *pressure);
+
 /* "500MB", "2GiB", "1.5 GB", "4096B": bytes, in units of 1000 or 1024; the whole of text, more than 0. Returns 0 or
  * -1. */
 int num_size_of(const char *text, int64_t *bytes);

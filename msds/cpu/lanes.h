@@ -68,6 +68,8 @@ typedef struct lanes {
     void (*tissue_swell)(const tissue_mesh *m, const lanes_field *way, int64_t from, int64_t to);
     /* Groups: what m->force changes by, where m->pressure changes by m->pressed. */
     void (*tissue_tangent)(const tissue_mesh *m, const lanes_field *way, int64_t from, int64_t to);
+    /* Groups: m->prestress, as linear elasticity has stress at this displacement. */
+    void (*tissue_prestress)(const tissue_mesh *m, const lanes_field *of, int64_t from, int64_t to);
     /* Slices of points: m->bulk times the sums of m->swollen, to value; to m->pressure with m->held. */
     void (*tissue_points)(const tissue_mesh *m, float *value, int64_t from, int64_t to);
     /* Slices of nodes: the sums of m->force to y, 0 at Dirichlet nodes; returns way . y; way NULL: 0. */

@@ -319,7 +319,7 @@ static int step_tissue(cpu_state *s, int64_t count, err *e)
 {
     if (!s->tissue && make_tissue(s, e))
         return -1;
-    tissue_begin(s->tissue);
+    tissue_begin(s->tissue, s->plan.elapsed);
     while (count > 0) {
         find_contacts(s, NULL, s->p->options.penalty ? CONTACTS_PRESSED : CONTACTS_NEAR);
         count -= tissue_step(s->tissue, count);
@@ -477,7 +477,9 @@ void msds_cpu_touch(msds_state *s, const msds_plan *plan)
 }
 
 const msds_executor msds_cpu = {
-    .is = {.device = "cpu", .features = EXECUTOR_CONTACT | EXECUTOR_WARP | EXECUTOR_TISSUE, .unusable = cpu_unusable},
+    .is = {.device = "cpu",
+           .features = EXECUTOR_CONTACT | EXECUTOR_WARP | EXECUTOR_TISSUE | EXECUTOR_CAVITIES,
+           .unusable = cpu_unusable},
     .create = cpu_create,
     .destroy = cpu_destroy,
     .step = cpu_step,

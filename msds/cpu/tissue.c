@@ -2,6 +2,8 @@
 
 #include "base/mem.h"
 #include "msds/cpu/sums.h"
+#include "msds/cpu/tissue_rest.h"
+#include "msds/cpu/tissue_walls.h"
 #include "msds/cpu/tissue_work.h"
 
 #include <math.h>
@@ -359,20 +361,25 @@ static void conclude(tissue *t)
                        : held;
         pressed_count(&t->pressed, c, &t->left, t->weight, &square, &load);
     }
+    for (int c = 0; c < t->pressed.p->cavities; c++)
+        load += t->pressed.p->cavity[c].pressure * t->pressed.p->cavity[c].pressure * t->pushed[c];
     load = fmax(fmax(load, t->square[SUM_PULL]), t->pressed.p->slight);
     t->residual = load > 0 ? sqrt(fmax(0, square) / load) : 0;
 }
 
 /* Holds pressures, but not of a state that is far from balance, where they mean nothing. */
-void tissue_begin(tissue *t)
+void tissue_begin(tissue *t, double elapsed)
 {
     for (int64_t i = 0; i < t->m.points && t->residual < balanced; i++)
         t->m.held[i] = t->m.keep[i] * t->m.pressure[i];
+    tissue_rest_fill(t, elapsed);
     find_left(t);
 }
 
 int64_t tissue_step(tissue *t, int64_t most)
 {
+    if (t->m.walls > t->m.lumens)
+        tissue_walls_brace(&t->m);
     pressed_push(&t->pressed, t->u, &t->left);
     tissue_copy(t, &t->started, t->u);
     const int64_t took = find_step(t, most);
@@ -393,7 +400,7 @@ int tissue_make(tissue *t, const msds_problem *p, const sell *s, contacts *c, co
     for (int i = 0; t->sum && t->sums && i < FIELDS; i++)
         if (lanes_field_make(fields[i], s->nodes, e))
             return -1;
-    return t->sum && t->sums ? tissue_mesh_make(&t->m, p, s, e) : -1;
+    return t->sum && t->sums && !tissue_mesh_make(&t->m, p, s, e) ? tissue_rest_make(t, e) : -1;
 }
 
 void tissue_reset(tissue *t)
@@ -410,6 +417,7 @@ void tissue_free(tissue *t)
         lanes_field_free(fields[i]);
     free(t->sum);
     free(t->sums);
+    free(t->pushed);
     tissue_mesh_free(&t->m);
     *t = (tissue){.alpha = 0};
 }

@@ -30,6 +30,7 @@ typedef struct tissue {
     lanes_field *to;
     float *points;
     double square[3]; /* N2: of what is left, of gravity, of what the elements pull with */
+    double *pushed;   /* cavities, N2/Pa2: the square of what a unit of pressure pushes nodes with at rest */
     double residual;  /* what is left over the load or the pull, whichever is more */
 } tissue;
 
@@ -41,8 +42,9 @@ void tissue_free(tissue *t);
 void tissue_reset(tissue *t);
 int64_t tissue_bytes(const tissue *t);
 
-/* Begins a frame: holds the pressures of the one before, and finds what is left at u. */
-void tissue_begin(tissue *t);
+/* Begins a frame: holds the pressures of the one before, takes those of cavities, and finds what is left at u. elapsed:
+ * s, that the frame takes; 0: not known, so that cavities have their pressure at once. */
+void tissue_begin(tissue *t, double elapsed);
 
 /* From there, a step of Newton's, of so many iterations at most, with the contacts listed: those near the probe, or,
  * for a penalty, those in it. Fills their forces. Returns how many iterations it took. */

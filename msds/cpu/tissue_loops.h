@@ -5,6 +5,7 @@
 #define SINEW_TISSUE_LOOPS_H
 
 #include "msds/cpu/tissue_mesh.h"
+#include "msds/cpu/tissue_walls.h"
 
 typedef v8 stable_number;
 typedef int32_t i8 __attribute__((vector_size(32)));
@@ -15,7 +16,16 @@ INLINE v8 stable_larger(v8 a, v8 b)
     return (v8)((is & (i8)a) | (~is & (i8)b));
 }
 
+INLINE v8 stable_root(v8 a)
+{
+    v8 to;
+    for (int l = 0; l < LANES; l++)
+        to[l] = __builtin_sqrtf(a[l]);
+    return to;
+}
+
 #include "msds/problem/stable.h"
+#include "msds/problem/wall.h"
 
 /* The gradients of corners 1 to 3 of a group's elements. */
 INLINE void take_gradients(const tissue_mesh *m, int64_t group, v8 q[9])
@@ -91,18 +101,39 @@ INLINE void measure_group(const tissue_mesh *m, int64_t i, bool row, const lanes
     store(m->swollen + i * LANES, .25f * load(m->volume + i * LANES) * stable_swelling_counted(swelling, counted));
 }
 
+/* Adds a matrix times the prestress, which is symmetric. */
+INLINE void add_prestress(const tissue_mesh *m, int64_t i, const v8 f[9], v8 stress[9])
+{
+    static const int at[9] = {0, 3, 4, 3, 1, 5, 4, 5, 2};
+    v8 s[6];
+    for (int k = 0; k < 6; k++)
+        s[k] = load(m->prestress + (6 * i + k) * LANES);
+    for (int a = 0; a < 3; a++)
+        for (int b = 0; b < 3; b++)
+            stress[3 * a + b] += (f[3 * a] * s[at[b]] + f[3 * a + 1] * s[at[3 + b]]) + f[3 * a + 2] * s[at[6 + b]];
+}
+
+INLINE void put_law(const tissue_mesh *m, int64_t i, v8 a, v8 b, v8 c, v8 d)
+{
+    float *law = m->law + STABLE_NUMBERS * i * LANES;
+    store(law, a);
+    store(law + LANES, b);
+    store(law + 2 * LANES, c);
+    store(law + 3 * LANES, d);
+}
+
 INLINE void stress_group(const tissue_mesh *m, int64_t i, bool row)
 {
     v8 q[9], g[9], stress[9];
-    float *law = m->law + STABLE_NUMBERS * i * LANES;
     take_gradients(m, i, q);
     take_g(m, i, g);
     const stable_state at = stable_stress(g, load(m->mu + i * LANES), load(m->kappa + i * LANES),
                                           point_mean(m, i, row, m->pressure), stress);
-    store(law, at.a);
-    store(law + LANES, at.b);
-    store(law + 2 * LANES, at.q);
-    store(law + 3 * LANES, at.r);
+    put_law(m, i, at.a, at.b, at.q, at.r);
+    for (int k = 0; m->prestress && k < 9; k += 4)
+        g[k] += 1;
+    if (m->prestress)
+        add_prestress(m, i, g, stress);
     put_forces(m, i, q, stress);
 }
 
@@ -127,35 +158,217 @@ INLINE void tangent_group(const tissue_mesh *m, int64_t i, bool row, const lanes
     take_g(m, i, g);
     derive(m, i, row, way, q, d);
     stable_tangent(g, d, &at, point_mean(m, i, row, m->pressed), stress);
+    if (m->prestress)
+        add_prestress(m, i, d, stress);
     put_forces(m, i, q, stress);
 }
 
+/* ---- cavities: all groups are scattered */
+
+INLINE void measure_lumen(const tissue_mesh *m, int64_t i, const lanes_field *u)
+{
+    v8 q[9], g[9], c[9];
+    take_gradients(m, i, q);
+    derive(m, i, false, u, q, g);
+    stable_cofactors(g, c);
+    for (int k = 0; k < 9; k++)
+        store(m->g + (9 * i + k) * LANES, g[k]);
+    store(m->swollen + i * LANES, load(m->volume + i * LANES) * stable_swelling(g, c));
+}
+
+INLINE void stress_lumen(const tissue_mesh *m, int64_t i)
+{
+    v8 q[9], g[9], stress[9];
+    const stable_thinness t = {(v8){0} + (float)TISSUE_WALLS_THIN, load(m->kappa + i * LANES),
+                               (v8){0} + (float)TISSUE_WALLS_THIN};
+    take_gradients(m, i, q);
+    take_g(m, i, g);
+    const v8 mu = load(m->mu + i * LANES);
+    const stable_state at = stable_stress_of(g, mu, mu, (v8){0}, &t, stress);
+    put_law(m, i, at.a + mu * (float)TISSUE_WALLS_DRAG, at.b, (v8){0}, at.r);
+    put_forces(m, i, q, stress);
+}
+
+/* What a cavity's content gives way by is what its walls do. */
+INLINE void swell_lumen(const tissue_mesh *m, int64_t i)
+{
+    store(m->swollen + i * LANES, (v8){0});
+}
+
+INLINE void tangent_lumen(const tissue_mesh *m, int64_t i, const lanes_field *way)
+{
+    v8 q[9], g[9], d[9], stress[9];
+    const float *law = m->law + STABLE_NUMBERS * i * LANES;
+    const stable_state at = {load(law), load(law + LANES), load(law + 2 * LANES), load(law + 3 * LANES)};
+    take_gradients(m, i, q);
+    take_g(m, i, g);
+    derive(m, i, false, way, q, d);
+    stable_tangent(g, d, &at, (v8){0}, stress);
+    put_forces(m, i, q, stress);
+}
+
+INLINE v8 fetch_point(const tissue_mesh *m, int64_t i, const float *value)
+{
+    return fetch(value, false, 0, m->point + 4 * i * LANES);
+}
+
+/* A field at the corners of triangles, and its two columns of derivatives. n: the group's numbers (tissue_walls.h). */
+INLINE void derive_wall(const tissue_mesh *m, int64_t i, const lanes_field *f, const v8 n[9], v8 x[9], v8 g[6])
+{
+    for (int c = 0; c < 3; c++)
+        for (int a = 0; a < 3; a++)
+            x[3 * c + a] = fetch(f->x[a], false, 0, m->node + (4 * i + c) * LANES);
+    for (int a = 0; a < 3; a++) {
+        g[a] = (x[3 + a] - x[a]) / n[6];
+        g[3 + a] = (x[6 + a] - x[a] - n[7] * g[a]) / n[8];
+    }
+}
+
+/* F, and the edges from corner 0. */
+INLINE void place_wall(const tissue_mesh *m, int64_t i, const v8 n[9], v8 f[6], v8 edge[6])
+{
+    for (int k = 0; k < 6; k++)
+        f[k] = n[k] + load(m->g + (9 * i + k) * LANES);
+    for (int a = 0; a < 3; a++) {
+        edge[a] = n[6] * f[a];
+        edge[3 + a] = n[7] * f[a] + n[8] * f[3 + a];
+    }
+}
+
+/* Forces of the corners: of a stress of the membrane, and as `corner` has them, per m2 at rest. */
+INLINE void put_wall(const tissue_mesh *m, int64_t i, const v8 n[9], const v8 stress[6], const v8 corner[9])
+{
+    const v8 area = load(m->volume + i * LANES);
+    float *to = m->force + i * LANES;
+    for (int a = 0; a < 3; a++) {
+        const v8 second = stress[3 + a] / n[8], first = (stress[a] - n[7] * second) / n[6];
+        store(to + a * m->stride, area * (corner[a] - (first + second)));
+        store(to + (3 + a) * m->stride, area * (corner[3 + a] + first));
+        store(to + (6 + a) * m->stride, area * (corner[6 + a] + second));
+    }
+}
+
+INLINE void measure_wall(const tissue_mesh *m, int64_t i, const lanes_field *u)
+{
+    v8 n[9], x[9], g[6];
+    take_gradients(m, i, n);
+    derive_wall(m, i, u, n, x, g);
+    for (int k = 0; k < 6; k++)
+        store(m->g + (9 * i + k) * LANES, g[k]);
+    store(m->swollen + i * LANES, (v8){0});
+}
+
+INLINE void stress_wall(const tissue_mesh *m, int64_t i)
+{
+    v8 n[9], g[6], f[6], edge[6], s[3], s0[3] = {{0}, {0}, {0}}, stress[6], normal[3], corner[9];
+    take_gradients(m, i, n);
+    place_wall(m, i, n, f, edge);
+    for (int k = 0; k < 6; k++)
+        g[k] = load(m->g + (9 * i + k) * LANES);
+    for (int k = 0; m->prestress && k < 3; k++)
+        s0[k] = load(m->prestress + (6 * i + k) * LANES);
+    wall_stress(n, g, load(m->mu + i * LANES), s0, s, stress);
+    const v8 p = fetch_point(m, i, m->pressure);
+    put_law(m, i, s[0], s[1], s[2], p);
+    wall_cross(f, f + 3, normal);
+    for (int k = 0; k < 9; k++)
+        corner[k] = p * normal[k % 3] * (1.f / 3);
+    put_wall(m, i, n, stress, corner);
+}
+
+/* What goes through it. */
+INLINE void swell_wall(const tissue_mesh *m, int64_t i, const lanes_field *way)
+{
+    v8 n[9], f[6], edge[6], x[9], g[6], normal[3], mean[3];
+    take_gradients(m, i, n);
+    place_wall(m, i, n, f, edge);
+    derive_wall(m, i, way, n, x, g);
+    wall_cross(f, f + 3, normal);
+    for (int a = 0; a < 3; a++)
+        mean[a] = (x[a] + x[3 + a] + x[6 + a]) * (1.f / 3);
+    store(m->swollen + i * LANES, load(m->volume + i * LANES) * wall_dot(normal, mean));
+}
+
+INLINE void tangent_wall(const tissue_mesh *m, int64_t i, const lanes_field *way)
+{
+    v8 n[9], f[6], edge[6], x[9], d[6], stress[6], normal[3], corner[9];
+    const float *law = m->law + STABLE_NUMBERS * i * LANES;
+    const v8 s[3] = {load(law), load(law + LANES), load(law + 2 * LANES)}, p = load(law + 3 * LANES);
+    take_gradients(m, i, n);
+    place_wall(m, i, n, f, edge);
+    derive_wall(m, i, way, n, x, d);
+    wall_tangent(f, d, s, load(m->mu + i * LANES), stress);
+    wall_follow(edge, x, p, corner);
+    wall_cross(f, f + 3, normal);
+    const v8 both = n[6] * n[8] * .5f, more = fetch_point(m, i, m->pressed);
+    for (int k = 0; k < 9; k++)
+        corner[k] = corner[k] / both + more * normal[k % 3] * (1.f / 3);
+    put_wall(m, i, n, stress, corner);
+}
+
+/* The prestress that a strain of linear elasticity would give: of the displacement `of`. */
+INLINE void prestress_group(const tissue_mesh *m, int64_t i, const lanes_field *of)
+{
+    v8 q[9], g[9];
+    take_gradients(m, i, q);
+    derive(m, i, false, of, q, g);
+    const v8 mu = load(m->mu + i * LANES) * .75f;
+    const v8 mean = (load(m->kappa + i * LANES) - mu * (5.f / 6)) * (g[0] + g[4] + g[8]);
+    const v8 s[6] = {mean + 2 * mu * g[0], mean + 2 * mu * g[4], mean + 2 * mu * g[8],
+                     mu * (g[1] + g[3]),   mu * (g[2] + g[6]),   mu * (g[5] + g[7])};
+    for (int k = 0; k < 6; k++)
+        store(m->prestress + (6 * i + k) * LANES, s[k]);
+}
+
+INLINE void prestress_wall(const tissue_mesh *m, int64_t i, const lanes_field *of)
+{
+    v8 n[9], x[9], g[6], s[3];
+    take_gradients(m, i, n);
+    derive_wall(m, i, of, n, x, g);
+    const v8 strain[3] = {wall_dot(n, g), wall_dot(n + 3, g + 3), (wall_dot(n, g + 3) + wall_dot(n + 3, g)) * .5f};
+    wall_law(strain, load(m->mu + i * LANES), s);
+    for (int k = 0; k < 3; k++)
+        store(m->prestress + (6 * i + k) * LANES, s[k]);
+}
+
 /* Groups whose corners are loaded in a row have code of their own, without a branch for each. */
-#define TISSUE_GROUPS(call_row, call_scattered)                                                                        \
+#define TISSUE_GROUPS(call_row, call_scattered, call_lumen, call_wall)                                                 \
     for (int64_t i = from; i < to; i++)                                                                                \
-        if (m->first[4 * i] != SELL_SCATTERED)                                                                         \
+        if (i >= m->walls)                                                                                             \
+            (call_wall);                                                                                               \
+        else if (i >= m->lumens)                                                                                       \
+            (call_lumen);                                                                                              \
+        else if (m->first[4 * i] != SELL_SCATTERED)                                                                    \
             (call_row);                                                                                                \
         else                                                                                                           \
             (call_scattered)
 
 static void tissue_measure(const tissue_mesh *m, const lanes_field *u, int64_t from, int64_t to)
 {
-    TISSUE_GROUPS(measure_group(m, i, true, u), measure_group(m, i, false, u));
+    TISSUE_GROUPS(measure_group(m, i, true, u), measure_group(m, i, false, u), measure_lumen(m, i, u),
+                  measure_wall(m, i, u));
 }
 
 static void tissue_stress(const tissue_mesh *m, int64_t from, int64_t to)
 {
-    TISSUE_GROUPS(stress_group(m, i, true), stress_group(m, i, false));
+    TISSUE_GROUPS(stress_group(m, i, true), stress_group(m, i, false), stress_lumen(m, i), stress_wall(m, i));
 }
 
 static void tissue_swell(const tissue_mesh *m, const lanes_field *way, int64_t from, int64_t to)
 {
-    TISSUE_GROUPS(swell_group(m, i, true, way), swell_group(m, i, false, way));
+    TISSUE_GROUPS(swell_group(m, i, true, way), swell_group(m, i, false, way), swell_lumen(m, i),
+                  swell_wall(m, i, way));
 }
 
 static void tissue_tangent(const tissue_mesh *m, const lanes_field *way, int64_t from, int64_t to)
 {
-    TISSUE_GROUPS(tangent_group(m, i, true, way), tangent_group(m, i, false, way));
+    TISSUE_GROUPS(tangent_group(m, i, true, way), tangent_group(m, i, false, way), tangent_lumen(m, i, way),
+                  tangent_wall(m, i, way));
+}
+
+static void tissue_prestress(const tissue_mesh *m, const lanes_field *of, int64_t from, int64_t to)
+{
+    TISSUE_GROUPS(prestress_group(m, i, of), prestress_group(m, i, of), (void)0, prestress_wall(m, i, of));
 }
 
 /* The lanes of a slot that have a summand. */

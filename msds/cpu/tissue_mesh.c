@@ -1,6 +1,7 @@
 #include "msds/cpu/tissue_mesh.h"
 
 #include "base/mem.h"
+#include "msds/cpu/tissue_walls.h"
 #include "msds/problem/stable_double.h"
 
 #include <math.h>
@@ -23,7 +24,7 @@ static const double at_once = 20;
 typedef struct placed {
     int32_t node[4]; /* in the solver's order; the first is the least */
     int32_t corner[4];
-    int32_t element;
+    int32_t element, cavity; /* -1: tissue */
 } placed;
 
 typedef struct maker {
@@ -37,12 +38,17 @@ typedef struct maker {
     double *own_bulk; /* points: kappa times volume */
     double *own_mu;   /* points: mu of linear elasticity times volume */
     double *room;     /* points: m3 */
+    cavity_wall *wall;
+    int64_t walls;     /* triangles */
+    double *mu, *hard; /* cavities: of their elements (tissue_walls.h) */
     err *e;
 } maker;
 
 static int by_shape(const void *a, const void *b)
 {
     const placed *x = a, *y = b;
+    if ((x->cavity < 0) != (y->cavity < 0))
+        return x->cavity < 0 ? -1 : 1;
     for (int c = 1; c < 4; c++) {
         const int32_t p = x->node[c] - x->node[0], q = y->node[c] - y->node[0];
         if (p != q)
@@ -53,10 +59,11 @@ static int by_shape(const void *a, const void *b)
     return (x->element > y->element) - (x->element < y->element);
 }
 
-/* Corners ascend, so that elements of one shape look alike. */
+/* Elements of cavities come last. Corners ascend, so that elements of one shape look alike. */
 static void place(const maker *k, int64_t t, placed *to)
 {
     to->element = (int32_t)t;
+    to->cavity = cavity_of(k->p->cavity, k->p->cavities, k->p->volume[t]);
     for (int c = 0; c < 4; c++) {
         const int32_t own = k->s->own_node[k->p->element_node[4 * t + c]];
         int at = c;
@@ -79,48 +86,79 @@ static bool follows(const maker *k, int64_t next)
     return true;
 }
 
-static int64_t run_from(const maker *k, int64_t at)
+static int64_t run_from(const maker *k, int64_t at, int64_t end)
 {
     int64_t count = 1;
-    while (count < LANES && at + count < k->p->elements && follows(k, at + count))
+    while (count < LANES && at + count < end && follows(k, at + count))
         count++;
     return count;
 }
 
-/* Lanes that groups have at most: each in a row is filled by ROW_LEAST at least, and all others but one are full. */
+/* Lanes that groups of elements have at most: each in a row is filled by ROW_LEAST at least, and all others but one of
+ * tissue and one of cavities are full. */
 static int64_t lanes_most(const maker *k)
 {
-    return 2 * k->p->elements + LANES;
+    return 2 * k->p->elements + 2 * LANES;
 }
 
-/* Groups in a row first, in the order of the list, then what is left over. */
-static void group(maker *k)
+static int64_t groups_of(int64_t lanes)
 {
-    int64_t rows = 0, filled = 0;
-    for (int64_t i = 0; i < lanes_most(k); i++)
-        k->at[i] = -1;
-    for (int64_t i = 0, count; i < k->p->elements; i += count) {
-        count = run_from(k, i);
+    return (lanes + LANES - 1) / LANES;
+}
+
+/* Elements of the list, from `group` on: groups in a row first, in the order of the list, then what is left over.
+ * Returns the group after them. */
+static int64_t group_range(maker *k, int64_t group, int64_t from, int64_t to)
+{
+    int64_t rows = group, filled = 0;
+    for (int64_t i = from, count; i < to; i += count) {
+        count = run_from(k, i, to);
         for (int64_t l = 0; l < count && count >= ROW_LEAST; l++)
             k->at[rows * LANES + l] = (int32_t)(i + l);
         rows += count >= ROW_LEAST;
     }
-    for (int64_t i = 0, count; i < k->p->elements; i += count) {
-        count = run_from(k, i);
+    for (int64_t i = from, count; i < to; i += count) {
+        count = run_from(k, i, to);
         for (int64_t l = 0; l < count && count < ROW_LEAST; l++)
             k->at[rows * LANES + filled++] = (int32_t)(i + l);
     }
-    k->m->groups = rows + (filled + LANES - 1) / LANES;
-    for (int64_t g = 0; g < 4 * k->m->groups; g++)
+    const int64_t end = rows + groups_of(filled);
+    for (int64_t g = 4 * group; g < 4 * end; g++)
         k->m->first[g] = g / 4 < rows ? k->list[k->at[g / 4 * LANES]].node[g % 4] : SELL_SCATTERED;
+    return end;
+}
+
+/* Of tissue, of cavities, and of walls (tissue_mesh.h). */
+static void group(maker *k)
+{
+    int64_t tissue = 0;
+    while (tissue < k->p->elements && k->list[tissue].cavity < 0)
+        tissue++;
+    for (int64_t i = 0; i < (groups_of(lanes_most(k)) + groups_of(k->walls)) * LANES; i++)
+        k->at[i] = -1;
+    k->m->lumens = group_range(k, 0, 0, tissue);
+    k->m->walls = group_range(k, k->m->lumens, tissue, k->p->elements);
+    k->m->groups = k->m->walls + groups_of(k->walls);
+}
+
+static int make_walls(maker *k)
+{
+    const msds_problem *p = k->p;
+    if (!p->cavities)
+        return 0;
+    k->walls = cavity_walls(p->cavity, p->cavities, p->element_node, p->volume, p->elements, &k->wall, k->e);
+    k->mu = mem_array(p->cavities, sizeof *k->mu, "the solver", k->e);
+    k->hard = mem_array(p->cavities, sizeof *k->hard, "the solver", k->e);
+    return k->walls < 0 || !k->mu || !k->hard || tissue_walls_moduli(p, k->wall, k->walls, k->mu, k->hard, k->e) ? -1
+                                                                                                                 : 0;
 }
 
 static int make_groups(maker *k)
 {
-    const int64_t elements = k->p->elements;
+    const int64_t elements = k->p->elements, most = groups_of(lanes_most(k)) + groups_of(k->walls);
     k->list = mem_array(elements, sizeof *k->list, "the solver", k->e);
-    k->at = mem_array(lanes_most(k), sizeof *k->at, "the solver", k->e);
-    k->m->first = mem_array(4 * (lanes_most(k) / LANES), sizeof *k->m->first, "the solver", k->e);
+    k->at = mem_array(most * LANES, sizeof *k->at, "the solver", k->e);
+    k->m->first = mem_array(4 * most, sizeof *k->m->first, "the solver", k->e);
     if (!k->list || !k->at || !k->m->first)
         return -1;
     for (int64_t t = 0; t < elements; t++)
@@ -164,24 +202,24 @@ static void add_to_point(maker *k, int32_t point, int64_t t)
     k->room[point] += s->volume / 4;
 }
 
+/* Of tissue; cavities have theirs after these. */
 static int number_points(maker *k, corner *list)
 {
-    const int64_t corners = 4 * k->p->elements;
-    for (int64_t i = 0; i < corners; i++) {
-        const int64_t t = i / 4;
-        list[i] = (corner){k->s->own_node[k->p->element_node[i]], k->p->volume[t], (int32_t)i};
-    }
+    int64_t corners = 0;
+    for (int64_t i = 0; i < 4 * k->p->elements; i++)
+        if (cavity_of(k->p->cavity, k->p->cavities, k->p->volume[i / 4]) < 0)
+            list[corners++] = (corner){k->s->own_node[k->p->element_node[i]], k->p->volume[i / 4], (int32_t)i};
     qsort(list, (size_t)corners, sizeof *list, by_point);
     k->points = 0;
     for (int64_t i = 0; i < corners; i++) {
         k->points += !i || list[i].node != list[i - 1].node || list[i].volume != list[i - 1].volume;
         k->point[list[i].at] = (int32_t)(k->points - 1);
     }
-    k->own_bulk = mem_array(k->points, sizeof *k->own_bulk, "the solver", k->e);
-    k->own_mu = k->own_bulk ? mem_array(k->points, sizeof *k->own_mu, "the solver", k->e) : NULL;
-    k->room = k->own_mu ? mem_array(k->points, sizeof *k->room, "the solver", k->e) : NULL;
+    k->own_bulk = mem_array(k->points + 1, sizeof *k->own_bulk, "the solver", k->e);
+    k->own_mu = k->own_bulk ? mem_array(k->points + 1, sizeof *k->own_mu, "the solver", k->e) : NULL;
+    k->room = k->own_mu ? mem_array(k->points + 1, sizeof *k->room, "the solver", k->e) : NULL;
     for (int64_t i = 0; k->room && i < corners; i++)
-        add_to_point(k, k->point[i], i / 4);
+        add_to_point(k, k->point[list[i].at], list[i].at / 4);
     return k->room ? 0 : -1;
 }
 
@@ -190,7 +228,7 @@ static bool needs_points(const msds_problem *p)
     for (int64_t t = 0; t < p->elements; t++)
         if (kappa_of(&p->element[t]) > kept_of(&p->element[t]))
             return true;
-    return false;
+    return p->cavities > 0;
 }
 
 static int make_points(maker *k)
@@ -204,7 +242,8 @@ static int make_points(maker *k)
     free(list);
     if (failed)
         return -1;
-    m->points = (k->points + LANES - 1) / LANES * LANES;
+    m->cavity_point = (int32_t)k->points;
+    m->points = groups_of(k->points + k->p->cavities) * LANES;
     m->bulk = mem_array(m->points, sizeof *m->bulk, "the solver", k->e);
     m->pressure = mem_array(m->points, sizeof *m->pressure, "the solver", k->e);
     m->pressed = mem_array(m->points, sizeof *m->pressed, "the solver", k->e);
@@ -228,12 +267,12 @@ static void fill_lane(const maker *k, int64_t g, int lane, const placed *from)
     const simplex *s = &k->p->element[from->element];
     for (int c = 0; c < 4; c++) {
         m->node[(4 * g + c) * LANES + lane] = from->node[c];
-        if (m->points)
+        if (m->points && from->cavity < 0)
             m->point[(4 * g + c) * LANES + lane] = k->point[4 * (int64_t)from->element + from->corner[c]];
     }
     m->volume[g * LANES + lane] = (float)s->volume;
-    m->mu[g * LANES + lane] = (float)STABLE_MU(s->mu);
-    m->kappa[g * LANES + lane] = (float)kept_of(s);
+    m->mu[g * LANES + lane] = (float)STABLE_MU(from->cavity < 0 ? s->mu : k->mu[from->cavity]);
+    m->kappa[g * LANES + lane] = (float)(from->cavity < 0 ? kept_of(s) : k->hard[from->cavity]);
 }
 
 /* The gradients of corners 1 to 3 of a group's elements: 0 where a lane is empty. */
@@ -269,7 +308,7 @@ static int fill_gradients(const maker *k)
     for (int64_t g = 0; m->shape && g < m->groups; g++) {
         double q[9 * LANES];
         gradients_of(k, g, q);
-        const int each = is_one_shape(k, g, q) ? 1 : LANES;
+        const int each = g < m->walls && is_one_shape(k, g, q) ? 1 : LANES;
         m->shape[g + 1] = m->shape[g] + 9 * each;
         if (MEM_ROOM(&m->gradient, &room, m->shape[g + 1], "the solver", k->e))
             return -1;
@@ -293,6 +332,8 @@ static bool are_points_in_row(const maker *k, int64_t which)
 static void link_points(const maker *k, int64_t group)
 {
     tissue_mesh *m = k->m;
+    if (group >= m->lumens)
+        return;
     bool rows = m->first[4 * group] != SELL_SCATTERED;
     for (int64_t c = 4 * group; c < 4 * group + 4; c++) {
         m->first_point[c] = m->points ? m->point[c * LANES] : 0;
@@ -328,6 +369,37 @@ static int fill_groups(const maker *k)
     return 0;
 }
 
+/* Of an element of tissue or of a cavity: what stands for lambda + 2 mu and more in the trace of its block, Pa. */
+static double trace_of(const maker *k, int64_t t)
+{
+    const simplex *s = &k->p->element[t];
+    const double own = fmin(s->lambda, (kept - 5. / 6) * s->mu);
+    const int cavity = cavity_of(k->p->cavity, k->p->cavities, k->p->volume[t]);
+    return cavity < 0 ? own + (s->lambda - own) / 4 + 4 * s->mu : 4 * (1 + TISSUE_WALLS_DRAG) * k->mu[cavity];
+}
+
+/* A membrane in its plane: 4/3 and 1/3 of its stiffness along and across a corner's height over the edge before it. */
+static void add_walls(const maker *k, double *sum)
+{
+    for (int64_t i = 0; i < k->walls; i++)
+        for (int c = 0; c < 3; c++) {
+            double edge[2][3], normal[3], across = 0, area = 0;
+            for (int a = 0; a < 3; a++) {
+                const double *x = k->p->position + a;
+                edge[0][a] = x[3 * (int64_t)k->wall[i].node[1]] - x[3 * (int64_t)k->wall[i].node[0]];
+                edge[1][a] = x[3 * (int64_t)k->wall[i].node[2]] - x[3 * (int64_t)k->wall[i].node[0]];
+                const double opposite =
+                    x[3 * (int64_t)k->wall[i].node[(c + 2) % 3]] - x[3 * (int64_t)k->wall[i].node[(c + 1) % 3]];
+                across += opposite * opposite;
+            }
+            simplex_cross(edge[0], edge[1], normal);
+            for (int a = 0; a < 3; a++)
+                area += normal[a] * normal[a];
+            sum[k->s->own_node[k->wall[i].node[c]]] +=
+                k->p->cavity[k->wall[i].cavity].wall * 5 / 9 * across / (2 * sqrt(area));
+        }
+}
+
 /* 1 over a third of the trace of each node's block at rest, about. */
 static int make_inverse(const maker *k)
 {
@@ -336,10 +408,12 @@ static int make_inverse(const maker *k)
     k->m->inverse = sum ? mem_array(k->s->nodes, sizeof *k->m->inverse, "the solver", k->e) : NULL;
     for (int64_t i = 0; k->m->inverse && i < 4 * p->elements; i++) {
         const simplex *s = &p->element[i / 4];
-        const double *q = s->gradient[i % 4], own = fmin(s->lambda, (kept - 5. / 6) * s->mu);
+        const double *q = s->gradient[i % 4];
         sum[k->s->own_node[p->element_node[i]]] +=
-            s->volume * (q[0] * q[0] + q[1] * q[1] + q[2] * q[2]) * (own + (s->lambda - own) / 4 + 4 * s->mu) / 3;
+            s->volume * (q[0] * q[0] + q[1] * q[1] + q[2] * q[2]) * trace_of(k, i / 4) / 3;
     }
+    if (k->m->inverse)
+        add_walls(k, sum);
     for (int64_t n = 0; k->m->inverse && n < p->nodes; n++) {
         const int32_t own = k->s->own_node[n];
         k->m->inverse[own] = p->fixed[n] ? 0 : (float)(1 / sum[own]);
@@ -350,31 +424,64 @@ static int make_inverse(const maker *k)
 
 /* ---- sums */
 
-/* of: of each corner of each lane, in m->node or m->point; apart: how far the corners of an element stand apart. */
-static int sum_corners(const maker *k, tissue_sums *s, int64_t takers, const int32_t *of, int64_t apart)
+/* Who takes what, as tissue_items has them. */
+typedef struct takers {
+    int32_t *taker, *where;
+    int64_t count;
+} takers;
+
+static void take(takers *to, int64_t taker, int64_t where)
+{
+    to->taker[to->count] = (int32_t)taker;
+    to->where[to->count++] = (int32_t)where;
+}
+
+/* Forces of corners, by nodes: those of walls have three. */
+static void take_corners(const maker *k, takers *to)
 {
     const tissue_mesh *m = k->m;
-    const int64_t corners = 4 * k->p->elements;
-    int32_t *taker = mem_array(corners, sizeof *taker, "the solver", k->e);
-    int32_t *where = taker ? mem_array(corners, sizeof *where, "the solver", k->e) : NULL;
-    int64_t n = 0;
-    for (int64_t i = 0; where && i < m->groups * LANES; i++)
-        for (int c = 0; c < 4 && k->at[i] >= 0; c++, n++) {
-            taker[n] = of[(4 * (i / LANES) + c) * LANES + i % LANES];
-            where[n] = (int32_t)(c * apart + i);
-        }
-    const tissue_items items = {n, taker, where, (int32_t)(m->groups * LANES)};
-    const int failed = !where || tissue_sums_make(s, takers, &items, k->e);
-    free(taker);
-    free(where);
+    for (int64_t i = 0; i < m->groups * LANES; i++) {
+        const bool is_wall = i >= m->walls * LANES, any = is_wall ? m->volume[i] > 0 : k->at[i] >= 0;
+        for (int c = 0; any && c < (is_wall ? 3 : 4); c++)
+            take(to, m->node[(4 * (i / LANES) + c) * LANES + i % LANES], 3 * c * m->stride + i);
+    }
+}
+
+/* Changes of volume, by points: each of an element of tissue; those of cavities and walls only where they matter. */
+static void take_swells(const maker *k, takers *to)
+{
+    const tissue_mesh *m = k->m;
+    for (int64_t i = 0; i < m->lumens * LANES; i++)
+        for (int c = 0; c < 4 && k->at[i] >= 0; c++)
+            take(to, m->point[(4 * (i / LANES) + c) * LANES + i % LANES], i);
+    for (int64_t i = m->lumens * LANES; i < m->groups * LANES; i++) {
+        const int32_t of = i < m->walls * LANES ? (k->at[i] < 0 ? -1 : k->list[k->at[i]].cavity)
+                           : m->volume[i] > 0   ? m->point[4 * (i / LANES) * LANES + i % LANES] - m->cavity_point
+                                                : -1;
+        if (of >= 0 && k->p->cavity[of].outflow > 0)
+            take(to, m->cavity_point + of, i);
+    }
+}
+
+static int make_sums(const maker *k, tissue_sums *s, int64_t count, void (*list)(const maker *k, takers *to))
+{
+    const int64_t most = 4 * k->m->groups * LANES;
+    takers t = {.taker = mem_array(most, sizeof *t.taker, "the solver", k->e)};
+    t.where = t.taker ? mem_array(most, sizeof *t.where, "the solver", k->e) : NULL;
+    if (t.where)
+        list(k, &t);
+    const tissue_items items = {t.count, t.taker, t.where, (int32_t)(k->m->groups * LANES)};
+    const int failed = !t.where || tissue_sums_make(s, count, &items, k->e);
+    free(t.taker);
+    free(t.where);
     return failed ? -1 : 0;
 }
 
 static int make_all_sums(const maker *k)
 {
     tissue_mesh *m = k->m;
-    return sum_corners(k, &m->corners, k->s->nodes, m->node, 3 * m->stride) ||
-                   (m->points && sum_corners(k, &m->swells, m->points, m->point, 0))
+    return make_sums(k, &m->corners, k->s->nodes, take_corners) ||
+                   (m->points && make_sums(k, &m->swells, m->points, take_swells))
                ? -1
                : 0;
 }
@@ -387,14 +494,26 @@ int tissue_mesh_make(tissue_mesh *m, const msds_problem *p, const sell *s, err *
         err_set(e, NULL, 0, "%lld tetrahedra; expected at most %d for the method tissue", (long long)p->elements,
                 INT32_MAX / 20);
     else
-        failed = make_groups(&k) || make_points(&k) || fill_groups(&k) || fill_gradients(&k) || make_inverse(&k) ||
-                 make_all_sums(&k);
+        failed = make_walls(&k) || make_groups(&k) || make_points(&k) || fill_groups(&k) || fill_gradients(&k) ||
+                 make_inverse(&k);
+    if (!failed && k.walls)
+        tissue_walls_fill(m, p, s, k.wall, k.walls);
+    if (!failed && p->cavities) {
+        m->at_rest = mem_array(s->nodes, sizeof *m->at_rest, "the solver", e);
+        failed = !m->at_rest;
+        if (!failed)
+            memcpy(m->at_rest, m->inverse, (size_t)s->nodes * sizeof *m->at_rest);
+    }
+    failed = failed || make_all_sums(&k);
     free(k.list);
     free(k.at);
     free(k.point);
     free(k.own_bulk);
     free(k.own_mu);
     free(k.room);
+    free(k.wall);
+    free(k.mu);
+    free(k.hard);
     return failed ? -1 : 0;
 }
 
@@ -407,10 +526,12 @@ void tissue_mesh_free(tissue_mesh *m)
     free(m->volume);
     free(m->mu);
     free(m->kappa);
+    free(m->prestress);
     free(m->bulk);
     free(m->keep);
     free(m->held);
     free(m->inverse);
+    free(m->at_rest);
     tissue_sums_free(&m->corners);
     tissue_sums_free(&m->swells);
     free(m->law);

@@ -80,10 +80,15 @@ static void over_points(tissue *t, float *to)
     pool_run(t->threads, t->m.points / LANES, SELL_CHUNK, points_work, t);
 }
 
-void tissue_pull(tissue *t, lanes_field *to)
+void tissue_measure(tissue *t)
 {
     tissue_groups(t, measure_work);
     over_points(t, t->m.pressure);
+}
+
+void tissue_pull(tissue *t, lanes_field *to)
+{
+    tissue_measure(t);
     tissue_groups(t, stress_work);
     t->along = NULL;
     t->to = to;
@@ -97,6 +102,16 @@ double tissue_change(tissue *t, const lanes_field *way)
     if (t->m.points)
         tissue_groups(t, swell_work);
     over_points(t, t->m.pressed);
+    tissue_groups(t, tangent_work);
+    return tissue_nodes_sum(t, gather_work);
+}
+
+double tissue_stiffness(tissue *t, const lanes_field *way)
+{
+    t->along = way;
+    t->to = &t->pulled;
+    for (int64_t i = 0; i < t->m.points; i++)
+        t->m.pressed[i] = 0;
     tissue_groups(t, tangent_work);
     return tissue_nodes_sum(t, gather_work);
 }

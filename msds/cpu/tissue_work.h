@@ -13,11 +13,17 @@ void tissue_nodes(tissue *t, pool_work *work);
 /* The same; returns the sum of what the chunks leave in t->sum. */
 double tissue_nodes_sum(tissue *t, pool_work *work);
 
+/* Volumes and pressures at u. */
+void tissue_measure(tissue *t);
+
 /* to: what the elements pull with at u, N, with the pressures and the tangents there. */
 void tissue_pull(tissue *t, lanes_field *to);
 
 /* t->pulled: what that changes by along a way from there. Returns way . pulled. */
 double tissue_change(tissue *t, const lanes_field *way);
+
+/* The same where no point's pressure changes. */
+double tissue_stiffness(tissue *t, const lanes_field *way);
 
 /* step += alpha way; left -= alpha pulled. Returns left . left inverse. */
 double tissue_advance(tissue *t, double alpha);

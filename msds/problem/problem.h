@@ -8,6 +8,7 @@
 #define SINEW_PROBLEM_H
 
 #include "model/model.h"
+#include "msds/problem/cavity.h"
 #include "msds/problem/simplex.h"
 #include "probe/probe.h"
 
@@ -45,6 +46,8 @@ typedef struct msds_problem {
     double scale;                /* m: what was taken */
     double slight;               /* N2: the square of a load that is as good as none, which strains by 1e-8 */
     msds_options options;
+    const msds_cavity *cavity; /* cavities; the caller's, which outlive states: only their pressures change */
+    int cavities;
 } msds_problem;
 
 /* How far a step that takes long has come. */
@@ -65,8 +68,9 @@ typedef struct msds_listener {
 
 typedef struct msds_plan {
     msds_method method;
-    bool warp; /* the FEM takes each element's rotation out */
-    double dt; /* s: of one step of springs */
+    bool warp;      /* the FEM takes each element's rotation out */
+    double dt;      /* s: of one step of springs */
+    double elapsed; /* s: that the move takes; 0: not known */
     bool touched;
     probe_placed probe;            /* where touched */
     const msds_listener *listener; /* NULL: nobody */

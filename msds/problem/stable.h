@@ -85,10 +85,16 @@ STABLE_FUNCTION stable_number stable_swelling_counted(stable_number swelling, st
     return counted * (swelling + 1) + (1 - counted * counted) / (2 * STABLE_COUNTED) - 1;
 }
 
-/* How far J is below STABLE_THIN, or 0. */
-STABLE_FUNCTION stable_number stable_lacking(stable_number swelling)
+/* From which J on an element gets stiff, and how much: its pressure is less by hard lacking^2, lacking = thin - J
+ * within 0 and most. */
+typedef struct stable_thinness {
+    stable_number thin, hard, most; /* hard: Pa */
+} stable_thinness;
+
+/* Of tissue. */
+STABLE_FUNCTION stable_thinness stable_tissue(stable_number mu)
 {
-    return stable_larger(STABLE_THIN - 1 - swelling, swelling * 0);
+    return (stable_thinness){mu * 0 + STABLE_THIN, mu * STABLE_STIFF / STABLE_THIN, mu * 0 + 1e30f};
 }
 
 /* What a stress has worked out, that the tangent takes: a, b/2 = mu/(I + 1)^2, q, and r, the bulk stiffness. */
@@ -100,14 +106,15 @@ enum { STABLE_NUMBERS = 4 };
 
 /* The first Piola-Kirchhoff stress a F + q cof F, with a = mu - mu/(I + 1), q = kappa (J - alpha) + p, less
  * what keeps it from being flat. */
-STABLE_FUNCTION stable_state stable_stress(const stable_number g[9], stable_number mu, stable_number kappa,
-                                           stable_number p, stable_number to[9])
+STABLE_FUNCTION stable_state stable_stress_of(const stable_number g[9], stable_number mu, stable_number kappa,
+                                              stable_number p, const stable_thinness *t, stable_number to[9])
 {
     stable_number c[9];
     stable_cofactors(g, c);
     const stable_number trace = g[0] + g[4] + g[8], more = 2 * trace + stable_dot(g, g); /* I - 3 */
     const stable_number share = mu / (more + 4), a = mu - share, swelling = stable_swelling(g, c);
-    const stable_number lacking = stable_lacking(swelling), stiff = mu * STABLE_STIFF / STABLE_THIN * lacking;
+    const stable_number lacking = -stable_larger(-stable_larger(t->thin - 1 - swelling, swelling * 0), -t->most);
+    const stable_number stiff = t->hard * lacking;
     const stable_number pressure = kappa * swelling + p - stiff * lacking;
     const stable_number q = pressure - mu * 3 / 4, both = share * more / 4 + pressure; /* a + q */
     for (int i = 0; i < 3; i++)
@@ -116,6 +123,14 @@ STABLE_FUNCTION stable_state stable_stress(const stable_number g[9], stable_numb
     for (int i = 0; i < 3; i++)
         to[4 * i] += both + q * trace;
     return (stable_state){a, share / (more + 4), q, kappa + 2 * stiff};
+}
+
+/* Of tissue. */
+STABLE_FUNCTION stable_state stable_stress(const stable_number g[9], stable_number mu, stable_number kappa,
+                                           stable_number p, stable_number to[9])
+{
+    const stable_thinness t = stable_tissue(mu);
+    return stable_stress_of(g, mu, kappa, p, &t, to);
 }
 
 /* What the stress changes by along d (the derivatives of a displacement), where p changes by more. */

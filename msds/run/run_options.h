@@ -12,7 +12,7 @@ struct options {
     const char *probe, *unit, *poses, *transform, *scale;
     int64_t iterations;
     double dt, damping, repulsion, rate, skin_stiffness, skin_anchors, skin_tension;
-    const char *skin;
+    const char *skin, *cavity, *outflow, *wall;
     opt_numbers gravity;
 };
 

@@ -69,12 +69,27 @@ static int read_options(const struct options *o, msds_options *to, err *e)
     return read_scale(o->scale, &to->scale, e);
 }
 
+static int read_cavities(session *s, err *e)
+{
+    const struct options *o = s->o;
+    const cavities_said said = {o->cavity, o->outflow, o->wall};
+    if (cavities_read(&s->cavities, &said, &s->m, e))
+        return -1;
+    if (s->cavities.count && (o->method != METHOD_TISSUE || o->compare))
+        return err_usage(e, "--cavity with %s%s; expected --method tissue", o->compare ? "--compare" : "--method ",
+                         o->compare ? "" : methods_words[o->method]);
+    cavities_put(&s->cavities, &s->problem);
+    return 0;
+}
+
 static int make_problem(session *s, err *e)
 {
     const struct options *o = s->o;
     msds_options options;
     if (read_options(o, &options, e) || msds_problem_make(&s->problem, &s->m, &options, e) ||
         model_axis_add(&s->m, "probe", 1, e))
+        return -1;
+    if (read_cavities(s, e))
         return -1;
     tool_say(s->t, "%lld nodes, %lld tetrahedra", (long long)s->problem.nodes, (long long)s->problem.elements);
     if (o->probe && probe_carry(&s->probe, &s->m, &s->warnings, e))
@@ -194,7 +209,7 @@ static int choose_device(session *s, err *e)
     const method_word method = (method_word)o->method;
     const uint32_t later = o->warp && method == METHOD_MSDS ? EXECUTOR_WARP : 0; /* where FEM begins */
     const executor_need need = {.features = methods_features(methods_with(method, o->exact, o->warp)) |
-                                            (o->device ? 0 : later)};
+                                            (s->cavities.count ? EXECUTOR_CAVITIES : 0) | (o->device ? 0 : later)};
     char device[300];
     s->device = msds_executor_of(executor_choose(msds_executors, names[o->device], &need, device, sizeof device, e));
     int threads = tool_threads(s->t, e);
@@ -268,6 +283,8 @@ int session_change(session *s, session_part part, err *e)
     const bool of_problem = part == SESSION_FORCES || part == SESSION_STEP || part == SESSION_SPRINGS;
     if (part == SESSION_PROBE)
         return change_probe(s, e);
+    if (part == SESSION_CAVITIES)
+        return cavities_change(&s->cavities, s->o->cavity, &s->m, e);
     if (part == SESSION_PACE)
         press_pace(&s->press, s->o->iterations, s->o->rate);
     if (of_problem && change_problem(s, part, e))

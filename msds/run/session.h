@@ -8,6 +8,7 @@
 #include "model/stage.h"
 #include "msds/problem/largest.h"
 #include "msds/problem/problem.h"
+#include "msds/run/cavities.h"
 #include "msds/run/compare.h"
 #include "msds/run/inverted.h"
 #include "msds/run/methods.h"
@@ -25,6 +26,7 @@ typedef enum session_part {
     SESSION_SPRINGS, /* the springs themselves, and with them their step */
     SESSION_PROBE,
     SESSION_SKIN,
+    SESSION_CAVITIES,
 } session_part;
 
 /* The largest value of all frames: of a displacement (m) or of the force on the probe (N). */
@@ -39,6 +41,7 @@ typedef struct session {
     stage stage;
     model m;
     msds_problem problem;
+    cavities cavities;
     probe probe;
     press press;
     skin skin;

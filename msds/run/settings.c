@@ -16,7 +16,7 @@ static const struct {
     {"mass", SESSION_STEP},         {"damping", SESSION_SPRINGS},     {"spring-scale", SESSION_SPRINGS},
     {"repulsion", SESSION_SPRINGS}, {"contact", SESSION_FORCES},      {"gravity", SESSION_FORCES},
     {"probe", SESSION_PROBE},       {"skin-stiffness", SESSION_SKIN}, {"skin-anchors", SESSION_SKIN},
-    {"skin-tension", SESSION_SKIN},
+    {"skin-tension", SESSION_SKIN}, {"cavity", SESSION_CAVITIES},
 };
 
 enum { SETTINGS = sizeof settings / sizeof *settings };
@@ -65,6 +65,8 @@ static int check(const session *s, const keyfile *k, int i, const struct options
     if (settings[i].part == SESSION_PROBE && has_file(to->probe))
         return keyfile_error(k, e, "set probe %.100s; expected a shape that needs no file, such as sphere:2cm",
                              to->probe);
+    if (settings[i].part == SESSION_CAVITIES && !s->cavities.count)
+        return keyfile_error(k, e, "set %s, but there is no cavity; expected --cavity", settings[i].key);
     if (settings[i].part == SESSION_SKIN && !s->skin.vertices)
         return keyfile_error(k, e, "set %s, but there is no skin; expected --skin", settings[i].key);
     return 0;
@@ -113,6 +115,8 @@ static int take_method(session *s, const keyfile *k, err *e)
     if (method < 0)
         return near_unknown(e, k->name, k->line, "method", k->word[1], methods_words, METHOD_WORDS);
     const method_word to = methods_with((method_word)method, s->o->exact, s->o->warp);
+    if (s->cavities.count && to != METHOD_TISSUE)
+        return keyfile_error(k, e, "method %s with --cavity; expected method tissue", methods_words[to]);
     if (methods_features(to) & ~s->device->is.features)
         return keyfile_error(k, e, "method %s is not done on a card; expected -d cpu", methods_words[to]);
     session_method(s, (method_word)method);
@@ -175,6 +179,7 @@ bool settings_text(const session *s, int i, char text[SETTINGS_TEXT])
 {
     char value[SETTINGS_TEXT - 40];
     if ((settings[i].part == SESSION_SKIN && !s->skin.vertices) ||
+        (settings[i].part == SESSION_CAVITIES && !s->cavities.count) ||
         (settings[i].part == SESSION_PROBE && has_file(s->o->probe)))
         return false;
     const opt *o = row_of(i);

@@ -10,6 +10,7 @@
 // needs: msds/problem/stiffness.c msds/cpu/dissect.c msds/cpu/factor.c msds/cpu/exact.c msds/cpu/mixing.c msds/cpu/cg.c
 // needs: msds/cpu/exact_making.c msds/cpu/msds_cpu.c msds/run/msds_executors.c
 // needs: msds/cpu/tissue.c msds/cpu/tissue_mesh.c msds/cpu/tissue_sums.c msds/cpu/tissue_work.c
+// needs: msds/cpu/tissue_walls.c msds/cpu/tissue_rest.c msds/problem/cavity.c
 // needs: msds/problem/largest.c slice/image/slice_cells.c
 // needs: slice/image/slice_mesh.c slice/image/slice_cutter.c slice/image/slice_paper.c slice/image/slice_lanes.c
 // needs: slice/image/slice_lanes_loops.c

@@ -6,6 +6,7 @@
 // needs: msds/problem/stiffness.c msds/cpu/dissect.c msds/cpu/factor.c msds/cpu/exact.c msds/cpu/mixing.c msds/cpu/cg.c
 // needs: msds/cpu/exact_making.c msds/cpu/msds_cpu.c msds/problem/largest.c
 // needs: msds/cpu/tissue.c msds/cpu/tissue_mesh.c msds/cpu/tissue_sums.c msds/cpu/tissue_work.c
+// needs: msds/cpu/tissue_walls.c msds/cpu/tissue_rest.c msds/problem/cavity.c
 #include "msds_block.h"
 
 #include "base/mem.h"

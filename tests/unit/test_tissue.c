@@ -7,6 +7,7 @@
 // needs: msds/problem/stiffness.c msds/cpu/dissect.c msds/cpu/factor.c msds/cpu/exact.c msds/cpu/mixing.c msds/cpu/cg.c
 // needs: msds/cpu/exact_making.c msds/cpu/msds_cpu.c msds/problem/largest.c
 // needs: msds/cpu/tissue.c msds/cpu/tissue_mesh.c msds/cpu/tissue_sums.c msds/cpu/tissue_work.c
+// needs: msds/cpu/tissue_walls.c msds/cpu/tissue_rest.c msds/problem/cavity.c
 #include "msds/problem/stable_double.h"
 
 #include "msds/cpu/msds_cpu.h"
@@ -216,7 +217,7 @@ static void test_checkerboard(void)
         if (r.p.position[3 * n + 2] > .0399 && hypot(r.p.position[3 * n] - .021, r.p.position[3 * n + 1] - .034) < .011)
             c.list[c.count++] = (contact){.node = (int32_t)n, .way = {0, 0, -1}, .depth = .004};
     for (int i = 0; i < 60; i++) {
-        tissue_begin(&t);
+        tissue_begin(&t, 0);
         for (int64_t k = 0; k < 20;)
             k += tissue_step(&t, 20 - k);
         for (int64_t k = 0; k < c.count; k++)
