@@ -306,6 +306,17 @@ INLINE void tangent_wall(const tissue_mesh *m, int64_t i, const lanes_field *way
     put_wall(m, i, n, stress, corner);
 }
 
+/* How much of a prestress an element can bear: at a corner of a wall that is not smooth it may be such that the element
+ * would give way. Its least eigenvalue, which is not below its mean less sqrt(2/3) of the norm of its deviator, stays
+ * above half a shear modulus of compression. */
+INLINE v8 prestress_share(const v8 s[6], v8 mu)
+{
+    const v8 mean = (s[0] + s[1] + s[2]) * (1.f / 3), x = s[0] - mean, y = s[1] - mean, z = s[2] - mean;
+    const v8 square = (x * x + y * y + z * z) + 2 * (s[3] * s[3] + s[4] * s[4] + s[5] * s[5]);
+    const v8 pressed = stable_root(square * (2.f / 3)) - mean, most = mu * .5f;
+    return most / stable_larger(pressed, most + 1e-30f);
+}
+
 /* The prestress that a strain of linear elasticity would give: of the displacement `of`. */
 INLINE void prestress_group(const tissue_mesh *m, int64_t i, const lanes_field *of)
 {
@@ -316,8 +327,9 @@ INLINE void prestress_group(const tissue_mesh *m, int64_t i, const lanes_field *
     const v8 mean = (load(m->kappa + i * LANES) - mu * (5.f / 6)) * (g[0] + g[4] + g[8]);
     const v8 s[6] = {mean + 2 * mu * g[0], mean + 2 * mu * g[4], mean + 2 * mu * g[8],
                      mu * (g[1] + g[3]),   mu * (g[2] + g[6]),   mu * (g[5] + g[7])};
+    const v8 share = prestress_share(s, mu);
     for (int k = 0; k < 6; k++)
-        store(m->prestress + (6 * i + k) * LANES, s[k]);
+        store(m->prestress + (6 * i + k) * LANES, share * s[k]);
 }
 
 INLINE void prestress_wall(const tissue_mesh *m, int64_t i, const lanes_field *of)
