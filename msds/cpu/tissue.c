@@ -333,19 +333,29 @@ static double slope_of(tissue *t)
     return slope;
 }
 
-/* Goes along the step as far as that does not overshoot by much: what is left pulls back along it by at most half of
- * the gain that was seen in what conjugate gradients added to it. */
+/* Goes along the step as far as that does not overshoot by much: what is left pulls along it, or back, by at most half
+ * of the gain that was seen in what conjugate gradients added to it. All of the step may pull on. */
 static void search(tissue *t)
 {
     const double gain = dot(t, &t->first, &t->step) - t->moved;
     double share = fmin(1, stride * t->pressed.p->side / longest(t));
+    double low = 0, at_low = gain, high = 0, at_high = 0; /* high: 0, if none is too far */
     for (int i = 0;; i++) {
         go(t, share);
         find_left(t);
         const double slope = slope_of(t);
-        if (i == SEARCHES - 1 || slope >= -enough * gain)
+        const bool too_far = !(slope >= -enough * gain), too_near = high > 0 && slope > enough * gain;
+        if (i == SEARCHES - 1 || !(too_far || too_near))
             return;
-        share *= isfinite(slope) ? fmin(fmax(gain / (gain - slope), .1), .7) : .1;
+        if (too_far) {
+            high = share;
+            at_high = slope;
+        } else {
+            low = share;
+            at_low = slope;
+        }
+        const double to = isfinite(at_high) ? at_low / (at_low - at_high) : 0;
+        share = low + (high - low) * fmin(fmax(to, .1), .7);
     }
 }
 
@@ -383,6 +393,8 @@ int64_t tissue_step(tissue *t, int64_t most)
     pressed_push(&t->pressed, t->u, &t->left);
     tissue_copy(t, &t->started, t->u);
     const int64_t took = find_step(t, most);
+    if (t->m.walls > t->m.lumens)
+        tissue_walls_spare(&t->m, &t->step, t->share);
     search(t);
     conclude(t);
     return took + 1;
@@ -395,12 +407,13 @@ int tissue_make(tissue *t, const msds_problem *p, const sell *s, contacts *c, co
 {
     *t = (tissue){.pressed = {p, s, c}, .loops = loops, .threads = threads, .u = u, .weight = weight};
     lanes_field *fields[FIELDS] = {&t->step, &t->left, &t->way, &t->pulled, &t->started, &t->first};
+    t->share = mem_array(s->nodes, sizeof *t->share, "the solver", e);
     t->sum = mem_array(pool_chunks(s->count, SELL_CHUNK), sizeof *t->sum, "the solver", e);
     t->sums = mem_array(pool_chunks(s->count, SELL_CHUNK), SUMS * sizeof *t->sums, "the solver", e);
-    for (int i = 0; t->sum && t->sums && i < FIELDS; i++)
+    for (int i = 0; t->share && t->sum && t->sums && i < FIELDS; i++)
         if (lanes_field_make(fields[i], s->nodes, e))
             return -1;
-    return t->sum && t->sums && !tissue_mesh_make(&t->m, p, s, e) ? tissue_rest_make(t, e) : -1;
+    return t->share && t->sum && t->sums && !tissue_mesh_make(&t->m, p, s, e) ? tissue_rest_make(t, e) : -1;
 }
 
 void tissue_reset(tissue *t)
@@ -418,6 +431,7 @@ void tissue_free(tissue *t)
     free(t->sum);
     free(t->sums);
     free(t->pushed);
+    free(t->share);
     tissue_mesh_free(&t->m);
     *t = (tissue){.alpha = 0};
 }

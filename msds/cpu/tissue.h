@@ -30,6 +30,7 @@ typedef struct tissue {
     lanes_field *to;
     float *points;
     double square[3]; /* N2: of what is left, of gravity, of what the elements pull with */
+    float *share;     /* nodes: of a step, for the while */
     double *pushed;   /* cavities, N2/Pa2: the square of what a unit of pressure pushes nodes with at rest */
     double residual;  /* what is left over the load or the pull, whichever is more */
 } tissue;

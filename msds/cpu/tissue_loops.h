@@ -176,17 +176,37 @@ INLINE void measure_lumen(const tissue_mesh *m, int64_t i, const lanes_field *u)
     store(m->swollen + i * LANES, load(m->volume + i * LANES) * stable_swelling(g, c));
 }
 
+/* What keeps walls from crossing acts on all corners; what keeps a cavity's elements in shape acts on nodes within it
+ * alone, so that these go along with the walls, but do not hold them. */
 INLINE void stress_lumen(const tissue_mesh *m, int64_t i)
 {
-    v8 q[9], g[9], stress[9];
-    const stable_thinness t = {(v8){0} + (float)TISSUE_WALLS_THIN, load(m->kappa + i * LANES),
-                               (v8){0} + (float)TISSUE_WALLS_THIN};
+    v8 q[9], g[9], c[9], f[9], stress[9];
+    const stable_barrier none = {{0}, {0}};
+    const v8 mu = load(m->mu + i * LANES), volume = load(m->volume + i * LANES);
+    float *to = m->force + i * LANES;
     take_gradients(m, i, q);
     take_g(m, i, g);
-    const v8 mu = load(m->mu + i * LANES);
-    const stable_state at = stable_stress_of(g, mu, mu, (v8){0}, &t, stress);
-    put_law(m, i, at.a + mu * (float)TISSUE_WALLS_DRAG, at.b, (v8){0}, at.r);
+    stable_cofactors(g, c);
+    const stable_barrier b =
+        stable_meeting(stable_swelling(g, c), (v8){0} + (float)TISSUE_WALLS_THIN, load(m->kappa + i * LANES));
+    const stable_state at = stable_stress_of(g, mu, mu, (v8){0}, &none, stress);
+    put_law(m, i, at.a, at.b, (v8){0}, at.r + b.stiffness);
     put_forces(m, i, q, stress);
+    for (int k = 0; k < 9; k++)
+        f[k] = g[k] + (k % 4 ? 0.f : 1.f);
+    stable_cofactors(f, c);
+    for (int a = 0; a < 3; a++) {
+        v8 sum = {0};
+        for (int k = 0; k < 4; k++) {
+            float *at_corner = to + (3 * k + a) * m->stride;
+            v8 push = {0};
+            for (int d = 0; d < 3 && k; d++)
+                push -= volume * b.pressure * c[3 * a + d] * q[3 * (k - 1) + d];
+            sum += push;
+            store(at_corner, load(at_corner) * load(m->within + (4 * (i - m->lumens) + k) * LANES) + push);
+        }
+        store(to + a * m->stride, load(to + a * m->stride) - sum);
+    }
 }
 
 /* What a cavity's content gives way by is what its walls do. */

@@ -375,7 +375,7 @@ static double trace_of(const maker *k, int64_t t)
     const simplex *s = &k->p->element[t];
     const double own = fmin(s->lambda, (kept - 5. / 6) * s->mu);
     const int cavity = cavity_of(k->p->cavity, k->p->cavities, k->p->volume[t]);
-    return cavity < 0 ? own + (s->lambda - own) / 4 + 4 * s->mu : 4 * (1 + TISSUE_WALLS_DRAG) * k->mu[cavity];
+    return cavity < 0 ? own + (s->lambda - own) / 4 + 4 * s->mu : 4 * k->mu[cavity];
 }
 
 /* A membrane in its plane: 4/3 and 1/3 of its stiffness along and across a corner's height over the edge before it. */
@@ -496,14 +496,15 @@ int tissue_mesh_make(tissue_mesh *m, const msds_problem *p, const sell *s, err *
     else
         failed = make_walls(&k) || make_groups(&k) || make_points(&k) || fill_groups(&k) || fill_gradients(&k) ||
                  make_inverse(&k);
-    if (!failed && k.walls)
-        tissue_walls_fill(m, p, s, k.wall, k.walls);
     if (!failed && p->cavities) {
         m->at_rest = mem_array(s->nodes, sizeof *m->at_rest, "the solver", e);
-        failed = !m->at_rest;
+        m->within = mem_array(4 * (m->walls - m->lumens) * LANES, sizeof *m->within, "the solver", e);
+        failed = !m->at_rest || !m->within;
         if (!failed)
             memcpy(m->at_rest, m->inverse, (size_t)s->nodes * sizeof *m->at_rest);
     }
+    if (!failed && k.walls)
+        failed = tissue_walls_fill(m, p, s, k.wall, k.walls, e);
     failed = failed || make_all_sums(&k);
     free(k.list);
     free(k.at);
@@ -532,6 +533,7 @@ void tissue_mesh_free(tissue_mesh *m)
     free(m->held);
     free(m->inverse);
     free(m->at_rest);
+    free(m->within);
     tissue_sums_free(&m->corners);
     tissue_sums_free(&m->swells);
     free(m->law);

@@ -29,25 +29,26 @@ typedef struct tissue_mesh {
     int32_t *point;         /* groups x 4 x LANES */
     int32_t *first_point;   /* groups x 4: where lane 0's point stands */
     int64_t *shape;         /* groups + 1: where the gradients of each begin in: */
-    float *gradient;     /* 1/m, of corners 1 to 3: 9 for a group of one shape, else 9 x LANES; walls: tissue_walls.h */
-    float *volume;       /* groups x LANES, m3; of walls: areas, m2 */
-    float *mu, *kappa;   /* groups x LANES, Pa: the law's; of lumens kappa is how hard thin elements are; of walls mu is
+    float *gradient;   /* 1/m, of corners 1 to 3: 9 for a group of one shape, else 9 x LANES; walls: tissue_walls.h */
+    float *volume;     /* groups x LANES, m3; of walls: areas, m2 */
+    float *mu, *kappa; /* groups x LANES, Pa: the law's; of lumens kappa is how hard thin elements are; of walls mu is
                                Young's modulus times thickness, N/m */
-    float *prestress;    /* groups x 6 x LANES, Pa (walls: N/m): elements 11, 22, 33, 12, 13, 23 (walls: 11, 22, 12) of
+    float *prestress;  /* groups x 6 x LANES, Pa (walls: N/m): elements 11, 22, 33, 12, 13, 23 (walls: 11, 22, 12) of
                                the second Piola-Kirchhoff stress at rest; NULL: none */
-    float *bulk;         /* points: what pressure changes by, over how the volume about them does, Pa/m3 */
-    float *keep;         /* points: what part of a pressure is held (tissue.h) */
-    float *inverse; /* nodes: 1 over the diagonal of the stiffness at rest, m/N; 0 where fixed; those of cavities: as
+    float *bulk;       /* points: what pressure changes by, over how the volume about them does, Pa/m3 */
+    float *keep;       /* points: what part of a pressure is held (tissue.h) */
+    float *inverse;    /* nodes: 1 over the diagonal of the stiffness at rest, m/N; 0 where fixed; those of cavities: as
                        tissue_walls_brace leaves it */
-    float *at_rest; /* nodes: the same at rest; NULL where there are no cavities */
-    tissue_sums corners; /* by nodes, into force */
-    tissue_sums swells;  /* by points, into swollen */
-    float *g;            /* groups x 9 x LANES: the displacement's derivatives */
-    float *law;          /* groups x STABLE_NUMBERS x LANES: what the tangent has there (stable.h) */
-    float *counted;      /* groups x LANES: how much of an element counts about points (stable.h) */
-    int64_t stride;      /* (groups + 1) x LANES; the last LANES are 0: */
-    float *force;        /* 12 x stride, N: components of corners, corner by corner */
-    float *swollen;      /* stride, m3: a quarter of what the volume changed by, as it counts */
+    float *within;     /* (walls - lumens) x 4 x LANES: 1 for corners within a cavity, 0 on its wall */
+    float *at_rest;    /* nodes: the same at rest; NULL where there are no cavities */
+    tissue_sums corners;    /* by nodes, into force */
+    tissue_sums swells;     /* by points, into swollen */
+    float *g;               /* groups x 9 x LANES: the displacement's derivatives */
+    float *law;             /* groups x STABLE_NUMBERS x LANES: what the tangent has there (stable.h) */
+    float *counted;         /* groups x LANES: how much of an element counts about points (stable.h) */
+    int64_t stride;         /* (groups + 1) x LANES; the last LANES are 0: */
+    float *force;           /* 12 x stride, N: components of corners, corner by corner */
+    float *swollen;         /* stride, m3: a quarter of what the volume changed by, as it counts */
     float *held, *pressure; /* points, Pa */
     float *pressed;         /* points, Pa: what that changes by along a direction */
 } tissue_mesh;

@@ -1,16 +1,20 @@
 #include "msds/cpu/tissue_walls.h"
 
 #include "base/mem.h"
+#include "msds/cpu/lanes.h"
 #include "msds/problem/stable_double.h"
 
 #include <math.h>
 #include <stdlib.h>
 
 /* Elements of a cavity have this share of the shear modulus about it: enough for their nodes to go along with walls. */
-static const double slack = 1e-6;
+static const double slack = 1e-2;
 
-/* At no volume they resist with so many shear moduli. */
-static const double meeting = 20;
+/* Where walls meet: so many shear moduli resist (stable_meeting in stable.h). */
+static const double meeting = .4;
+
+/* What a step leaves of an element's volume at least, and how much of it is taken in any case. */
+static const double left_most = .4, share_least = .02;
 
 static double dot(const double a[3], const double b[3])
 {
@@ -36,7 +40,21 @@ static double measure(const msds_problem *p, const int32_t node[3], double to[9]
     return to[6] * to[8] / 2;
 }
 
-void tissue_walls_fill(tissue_mesh *m, const msds_problem *p, const sell *s, const cavity_wall *walls, int64_t count)
+static int find_within(tissue_mesh *m, const sell *s, const cavity_wall *walls, int64_t count, err *e)
+{
+    uint8_t *on = mem_array(s->nodes, 1, "the solver", e);
+    for (int64_t i = 0; on && i < count; i++)
+        for (int c = 0; c < 3; c++)
+            on[s->own_node[walls[i].node[c]]] = 1;
+    for (int64_t i = 0; on && i < 4 * (m->walls - m->lumens) * LANES; i++)
+        m->within[i] = on[m->node[4 * m->lumens * LANES + i]] ? 0 : 1;
+    const int failed = !on;
+    free(on);
+    return failed ? -1 : 0;
+}
+
+int tissue_walls_fill(tissue_mesh *m, const msds_problem *p, const sell *s, const cavity_wall *walls, int64_t count,
+                      err *e)
 {
     for (int64_t i = 0; i < (m->groups - m->walls) * LANES; i++) {
         const int64_t group = m->walls + i / LANES, lane = i % LANES;
@@ -55,12 +73,68 @@ void tissue_walls_fill(tissue_mesh *m, const msds_problem *p, const sell *s, con
             m->mu[group * LANES + lane] = (float)p->cavity[w->cavity].wall;
         }
     }
+    return find_within(m, s, walls, count, e);
+}
+
+static double gradient_at(const tissue_mesh *m, int64_t group, int64_t lane, int k)
+{
+    const bool one = m->shape[group + 1] - m->shape[group] == 9;
+    return (double)m->gradient[m->shape[group] + (one ? k : k * LANES + lane)];
+}
+
+static double swollen(const double g[9])
+{
+    double cofactors[9];
+    stable_cofactors(g, cofactors);
+    return stable_swelling(g, cofactors);
+}
+
+/* How much of a step an element of a cavity may take. */
+static double share_of(const tissue_mesh *m, int64_t group, int64_t lane, const lanes_field *step)
+{
+    double g[9], to[9];
+    for (int a = 0; a < 3; a++)
+        for (int b = 0; b < 3; b++) {
+            double sum = 0;
+            for (int c = 0; c < 3; c++) {
+                const int32_t *node = m->node + 4 * group * LANES + lane;
+                const double by = (double)step->x[a][node[(c + 1) * LANES]] - (double)step->x[a][node[0]];
+                sum += by * gradient_at(m, group, lane, 3 * c + b);
+            }
+            g[3 * a + b] = (double)m->g[(9 * group + 3 * a + b) * LANES + lane];
+            to[3 * a + b] = g[3 * a + b] + sum;
+        }
+    const double from = 1 + swollen(g), end = 1 + swollen(to);
+    if (!(from > 0) || end >= left_most * from)
+        return 1;
+    return fmax((1 - left_most) * from / (from - end), share_least);
+}
+
+void tissue_walls_spare(const tissue_mesh *m, lanes_field *step, float *share)
+{
+    for (int64_t i = 4 * m->lumens * LANES; i < 4 * m->walls * LANES; i++)
+        share[m->node[i]] = 1;
+    for (int64_t i = m->lumens * LANES; i < m->walls * LANES; i++) {
+        const int64_t group = i / LANES, lane = i % LANES;
+        if (!(m->volume[i] > 0))
+            continue;
+        const float own = (float)share_of(m, group, lane, step);
+        for (int c = 0; c < 4; c++) {
+            float *of = &share[m->node[(4 * group + c) * LANES + lane]];
+            *of = own < *of ? own : *of;
+        }
+    }
+    for (int64_t i = 4 * m->lumens * LANES; i < 4 * m->walls * LANES; i++) {
+        const int32_t node = m->node[i];
+        for (int a = 0; a < 3; a++)
+            step->x[a][node] *= share[node];
+        share[node] = 1;
+    }
 }
 
 /* The squares of cof F times the gradients of corners, of an element in a lane; corner 0 has the others' sum. */
 static void steepness(const tissue_mesh *m, int64_t group, int64_t lane, double to[4])
 {
-    const bool one = m->shape[group + 1] - m->shape[group] == 9;
     double f[9], cofactors[9], all[3] = {0};
     for (int k = 0; k < 9; k++)
         f[k] = (double)m->g[(9 * group + k) * LANES + lane] + (k % 4 == 0);
@@ -69,10 +143,8 @@ static void steepness(const tissue_mesh *m, int64_t group, int64_t lane, double 
         to[c] = 0;
         for (int a = 0; a < 3; a++) {
             double sum = 0;
-            for (int b = 0; b < 3; b++) {
-                const int64_t at = m->shape[group] + (one ? 3 * c - 3 + b : (3 * c - 3 + b) * LANES + lane);
-                sum += cofactors[3 * a + b] * (double)m->gradient[at];
-            }
+            for (int b = 0; b < 3; b++)
+                sum += cofactors[3 * a + b] * gradient_at(m, group, lane, 3 * c - 3 + b);
             all[a] += sum;
             to[c] += sum * sum;
         }
@@ -119,7 +191,7 @@ int tissue_walls_moduli(const msds_problem *p, const cavity_wall *walls, int64_t
     for (int c = 0; about && room && c < p->cavities; c++) {
         const double own = room[c] > 0 ? room[c] / mu[c] : 1;
         mu[c] = slack * own;
-        hard[c] = meeting * own / (TISSUE_WALLS_THIN * TISSUE_WALLS_THIN);
+        hard[c] = meeting * own;
     }
     const int failed = !about || !room;
     free(about);

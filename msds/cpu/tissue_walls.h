@@ -9,18 +9,21 @@
 
 #include "msds/cpu/tissue_mesh.h"
 
-/* From which share of its volume on an element of a cavity gets stiff: walls that meet leave half of that, about. */
-#define TISSUE_WALLS_THIN .04
+struct lanes_field;
 
-/* Tangents take an element of a cavity as so many times stiffer in shear than it is: so steps of Newton's do not throw
- * its nodes about, though in balance it hardly resists. */
-#define TISSUE_WALLS_DRAG 1e4
+/* From which share of its volume on an element of a cavity gets stiff: walls that meet leave a quarter of that, about. */
+#define TISSUE_WALLS_THIN .1
 
-/* Triangles in place; the mesh's arrays are made, and it keeps no more. */
-void tissue_walls_fill(tissue_mesh *m, const msds_problem *p, const sell *s, const cavity_wall *walls, int64_t count);
+/* Triangles in place, and m->within; the mesh's arrays are made. -1 with e filled. */
+int tissue_walls_fill(tissue_mesh *m, const msds_problem *p, const sell *s, const cavity_wall *walls, int64_t count,
+                      err *e);
 
 /* Makes m->inverse that of the tangents in m->law, as far as elements of cavities are thin there and stiff. */
 void tissue_walls_brace(tissue_mesh *m);
+
+/* Shortens a step at nodes of elements of cavities that would lose most of what they still have of their volume, so
+ * that walls come near before they meet. share: nodes, for the while. m->g: where the step begins. */
+void tissue_walls_spare(const tissue_mesh *m, struct lanes_field *step, float *share);
 
 /* Moduli, Pa, of the elements of each cavity: what they resist other changes of shape with, and how hard they are when
  * thin; to: cavities each. -1 with e filled. */

@@ -24,6 +24,9 @@
 #define STABLE_THIN  .2f
 #define STABLE_STIFF 330
 
+/* The x of stable_meeting below which its pressure does not grow. */
+#define STABLE_LEAST .02f
+
 #define STABLE_FUNCTION static inline __attribute__((always_inline))
 
 /* mu and kappa of the moduli of linear elasticity. */
@@ -85,16 +88,28 @@ STABLE_FUNCTION stable_number stable_swelling_counted(stable_number swelling, st
     return counted * (swelling + 1) + (1 - counted * counted) / (2 * STABLE_COUNTED) - 1;
 }
 
-/* From which J on an element gets stiff, and how much: its pressure is less by hard lacking^2, lacking = thin - J
- * within 0 and most. */
-typedef struct stable_thinness {
-    stable_number thin, hard, most; /* hard: Pa */
-} stable_thinness;
+/* What keeps an element from being pressed flat: a pressure that is missing from its own, and what that changes by with
+ * J. */
+typedef struct stable_barrier {
+    stable_number pressure, stiffness; /* Pa */
+} stable_barrier;
 
-/* Of tissue. */
-STABLE_FUNCTION stable_thinness stable_tissue(stable_number mu)
+/* Of tissue, below STABLE_THIN. */
+STABLE_FUNCTION stable_barrier stable_thin(stable_number swelling, stable_number mu)
 {
-    return (stable_thinness){mu * 0 + STABLE_THIN, mu * STABLE_STIFF / STABLE_THIN, mu * 0 + 1e30f};
+    const stable_number lacking = stable_larger(STABLE_THIN - 1 - swelling, swelling * 0);
+    const stable_number stiff = mu * STABLE_STIFF / STABLE_THIN * lacking;
+    return (stable_barrier){stiff * lacking, 2 * stiff};
+}
+
+/* Of cavities, whose walls meet: hard (1 - x)^2 / x, x = J/thin, so that half of the volume bears twice the pressure;
+ * constant below x = STABLE_LEAST. */
+STABLE_FUNCTION stable_barrier stable_meeting(stable_number swelling, stable_number thin, stable_number hard)
+{
+    const stable_number none = swelling * 0, x = (swelling + 1) / thin;
+    const stable_number at = -stable_larger(-stable_larger(x, none + STABLE_LEAST), none - 1), left = 1 - at;
+    const stable_number within = -stable_larger(-stable_larger((x - STABLE_LEAST) * 1e6f, none), none - 1);
+    return (stable_barrier){hard * left * left / at, hard * within * left * (1 + at) / (at * at * thin)};
 }
 
 /* What a stress has worked out, that the tangent takes: a, b/2 = mu/(I + 1)^2, q, and r, the bulk stiffness. */
@@ -107,30 +122,30 @@ enum { STABLE_NUMBERS = 4 };
 /* The first Piola-Kirchhoff stress a F + q cof F, with a = mu - mu/(I + 1), q = kappa (J - alpha) + p, less
  * what keeps it from being flat. */
 STABLE_FUNCTION stable_state stable_stress_of(const stable_number g[9], stable_number mu, stable_number kappa,
-                                              stable_number p, const stable_thinness *t, stable_number to[9])
+                                              stable_number p, const stable_barrier *b, stable_number to[9])
 {
     stable_number c[9];
     stable_cofactors(g, c);
     const stable_number trace = g[0] + g[4] + g[8], more = 2 * trace + stable_dot(g, g); /* I - 3 */
     const stable_number share = mu / (more + 4), a = mu - share, swelling = stable_swelling(g, c);
-    const stable_number lacking = -stable_larger(-stable_larger(t->thin - 1 - swelling, swelling * 0), -t->most);
-    const stable_number stiff = t->hard * lacking;
-    const stable_number pressure = kappa * swelling + p - stiff * lacking;
+    const stable_number pressure = kappa * swelling + p - b->pressure;
     const stable_number q = pressure - mu * 3 / 4, both = share * more / 4 + pressure; /* a + q */
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++)
             to[3 * i + j] = a * g[3 * i + j] + q * (c[3 * i + j] - g[3 * j + i]);
     for (int i = 0; i < 3; i++)
         to[4 * i] += both + q * trace;
-    return (stable_state){a, share / (more + 4), q, kappa + 2 * stiff};
+    return (stable_state){a, share / (more + 4), q, kappa + b->stiffness};
 }
 
 /* Of tissue. */
 STABLE_FUNCTION stable_state stable_stress(const stable_number g[9], stable_number mu, stable_number kappa,
                                            stable_number p, stable_number to[9])
 {
-    const stable_thinness t = stable_tissue(mu);
-    return stable_stress_of(g, mu, kappa, p, &t, to);
+    stable_number c[9];
+    stable_cofactors(g, c);
+    const stable_barrier b = stable_thin(stable_swelling(g, c), mu);
+    return stable_stress_of(g, mu, kappa, p, &b, to);
 }
 
 /* What the stress changes by along d (the derivatives of a displacement), where p changes by more. */
