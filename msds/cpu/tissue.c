@@ -333,12 +333,39 @@ static double slope_of(tissue *t)
     return slope;
 }
 
+static void shorten_work(void *context, int64_t chunk, int64_t from, int64_t to)
+{
+    const tissue *t = context;
+    (void)chunk;
+    for (int a = 0; a < 3; a++)
+        for (int64_t i = from * LANES; i < to * LANES; i++)
+            t->step.x[a][i] *= t->alpha;
+}
+
+/* So that no node goes farther than it may, and walls do not cross; the latter not where the tissue would not yield to
+ * what is left of the step. */
+static void shorten(tissue *t)
+{
+    const double share = stride * t->pressed.p->side / longest(t);
+    if (share < 1) {
+        t->alpha = (float)share;
+        tissue_nodes(t, shorten_work);
+        t->moved *= share;
+    }
+    if (t->m.walls == t->m.lumens)
+        return;
+    tissue_copy(t, &t->way, &t->step);
+    tissue_walls_spare(&t->m, &t->step, t->share);
+    if (!(dot(t, &t->first, &t->step) > t->moved))
+        tissue_copy(t, &t->step, &t->way);
+}
+
 /* Goes along the step as far as that does not overshoot by much: what is left pulls along it, or back, by at most half
  * of the gain that was seen in what conjugate gradients added to it. All of the step may pull on. */
 static void search(tissue *t)
 {
     const double gain = dot(t, &t->first, &t->step) - t->moved;
-    double share = fmin(1, stride * t->pressed.p->side / longest(t));
+    double share = 1;
     double low = 0, at_low = gain, high = 0, at_high = 0; /* high: 0, if none is too far */
     for (int i = 0;; i++) {
         go(t, share);
@@ -393,8 +420,7 @@ int64_t tissue_step(tissue *t, int64_t most)
     pressed_push(&t->pressed, t->u, &t->left);
     tissue_copy(t, &t->started, t->u);
     const int64_t took = find_step(t, most);
-    if (t->m.walls > t->m.lumens)
-        tissue_walls_spare(&t->m, &t->step, t->share);
+    shorten(t);
     search(t);
     conclude(t);
     return took + 1;

@@ -35,11 +35,23 @@ static void say_row(session *s, const char *row)
         tool_detail(s->t, "%s", row);
 }
 
+/* Columns of cavities: how far each is open. heading: their names. */
+static void put_cavities(const session *s, bool heading, char *to, size_t size)
+{
+    const model_array *name = model_find(&s->m, "volume.name");
+    size_t at = 0;
+    to[0] = 0;
+    for (int c = 0; c < s->cavities.count && at < size; c++)
+        at += (size_t)(heading ? snprintf(to + at, size - at, "  %7.7s%%", name->str[s->cavities.list[c].volume])
+                               : snprintf(to + at, size - at, "  %8.3g", 100 * s->openness.now[c]));
+}
+
 static void say_heading(session *s)
 {
-    char row[200];
-    snprintf(row, sizeof row, "%10s  %-10s  %7s  %9s  %9s  %6s%s  %8s", "time/s", "method", "pressed", "force/N",
-             "residual", "solves", s->other ? "  other's/N   rms/rms   max/max" : "", "inverted");
+    char row[1000], hollow[800];
+    put_cavities(s, true, hollow, sizeof hollow);
+    snprintf(row, sizeof row, "%10s  %-10s  %7s  %9s  %9s  %6s%s  %8s%s", "time/s", "method", "pressed", "force/N",
+             "residual", "solves", s->other ? "  other's/N   rms/rms   max/max" : "", "inverted", hollow);
     say_row(s, row);
 }
 
@@ -64,7 +76,7 @@ static void find_peaks(session *s)
 void frame_report_row(session *s)
 {
     const msds_reading *reading = &s->reading;
-    char left[40] = "-", solves[40] = "-", other[100] = "", row[300];
+    char left[40] = "-", solves[40] = "-", other[100] = "", row[1000], hollow[800];
     if (!isnan(reading->residual))
         snprintf(left, sizeof left, "%.3g", reading->residual);
     if (reading->solves)
@@ -72,8 +84,10 @@ void frame_report_row(session *s)
     if (s->other)
         snprintf(other, sizeof other, "  %9.4g  %8.4g  %8.4g", size_of(s->other->reading.force), s->other->mean,
                  s->other->worst);
-    snprintf(row, sizeof row, "%10.6g  %-10s  %7lld  %9.4g  %9s  %6s%s  %8lld", s->time, name_of(s),
-             (long long)reading->contacts, size_of(reading->force), left, solves, other, (long long)s->inverted.now);
+    put_cavities(s, false, hollow, sizeof hollow);
+    snprintf(row, sizeof row, "%10.6g  %-10s  %7lld  %9.4g  %9s  %6s%s  %8lld%s", s->time, name_of(s),
+             (long long)reading->contacts, size_of(reading->force), left, solves, other, (long long)s->inverted.now,
+             hollow);
     if (s->posed == 1)
         say_heading(s);
     say_row(s, row);
@@ -95,6 +109,15 @@ static void warn_of_misses(session *s)
                   s->skin_name);
 }
 
+static void say_cavities(const session *s)
+{
+    const model_array *name = model_find(&s->m, "volume.name");
+    for (int c = 0; c < s->cavities.count; c++)
+        tool_say(s->t, "cavity %s: %.4g ml at rest; at least %.3g %% of that, at %.6g s; %.3g %% at the end",
+                 name->str[s->cavities.list[c].volume], 1e6 * s->openness.at_rest[c], 100 * s->openness.least[c],
+                 s->openness.least_time[c], 100 * s->openness.now[c]);
+}
+
 void frame_report_end(session *s)
 {
     char force[200] = "";
@@ -108,6 +131,7 @@ void frame_report_end(session *s)
         snprintf(force, sizeof force, "; no force on the probe");
     tool_say(s->t, "%lld pose%s, to %.6g s: largest displacement %.6g mm, at %.6g s%s", (long long)s->posed,
              s->posed == 1 ? "" : "s", s->time, 1e3 * u->value, u->time, force);
+    say_cavities(s);
 }
 
 /* Live, where no line is known, it is said once. */

@@ -13,11 +13,10 @@ static const char rest[] = "rest";
 
 /* What a record is of. */
 typedef struct origin {
-    char probe[200], model[RECORD_WORD], start[RECORD_WORD];
-    record_of list[5];
+    char probe[200], model[RECORD_WORD], start[RECORD_WORD], cavities[600];
+    record_of list[6];
+    int count;
 } origin;
-
-enum { ORIGINS = sizeof(((origin *)0)->list) / sizeof(record_of) };
 
 /* A probe of a file is the model's; another is a setting. */
 static void name_probe(const session *s, char *to, size_t size)
@@ -47,6 +46,11 @@ static void find_origin(const session *s, origin *o)
     o->list[2] = (record_of){"skin", s->skin.vertices ? s->skin_name : "none"};
     o->list[3] = (record_of){"model", o->model};
     o->list[4] = (record_of){"start", o->start};
+    o->count = 5;
+    if (!s->cavities.count) /* as records had it before there were any */
+        return;
+    cavities_text(&s->cavities, &s->m, o->cavities, sizeof o->cavities);
+    o->list[o->count++] = (record_of){"cavities", o->cavities};
 }
 
 record *msds_record_create(const session *s, err *e)
@@ -54,7 +58,7 @@ record *msds_record_create(const session *s, err *e)
     origin of;
     char text[SETTINGS_TEXT];
     find_origin(s, &of);
-    record *r = record_create(s->o->record, s->o->force, run_options_table.name, of.list, ORIGINS, e);
+    record *r = record_create(s->o->record, s->o->force, run_options_table.name, of.list, of.count, e);
     if (!r)
         return NULL;
     record_setting(r, "method %s", methods_words[s->method]);
@@ -142,7 +146,7 @@ int msds_record_replay(session *s, err *e)
 {
     origin of;
     find_origin(s, &of);
-    replay *r = replay_open(s->o->replay, run_options_table.name, of.list, ORIGINS, e);
+    replay *r = replay_open(s->o->replay, run_options_table.name, of.list, of.count, e);
     if (!r)
         return -1;
     s->source = s->o->replay;

@@ -141,7 +141,8 @@ static int take_frames(session *s, err *e)
 
 int session_start(session *s, err *e)
 {
-    if (take_frames(s, e) || inverted_make(&s->inverted, &s->problem, s->threads, e))
+    if (take_frames(s, e) || inverted_make(&s->inverted, &s->problem, s->threads, e) ||
+        openness_make(&s->openness, &s->problem, e))
         return -1;
     s->state = s->device->create(&s->problem, s->threads, e);
     if (!s->state)
@@ -300,6 +301,7 @@ void session_free(session *s)
     if (s->state)
         s->device->destroy(s->state);
     inverted_free(&s->inverted);
+    openness_free(&s->openness);
     pool_destroy(s->threads);
     for (int i = 0; i < SESSION_TEXTS; i++)
         free(s->text[i]);

@@ -12,6 +12,7 @@
 #include "msds/run/compare.h"
 #include "msds/run/inverted.h"
 #include "msds/run/methods.h"
+#include "msds/run/openness.h"
 #include "msds/run/press.h"
 #include "msds/run/run_options.h"
 #include "msds/run/skin_model.h"
@@ -54,6 +55,7 @@ typedef struct session {
     pool *threads;
     msds_state *state;
     inverted inverted;
+    openness openness;
     compare *other;       /* the other method, or NULL */
     const char *source;   /* of the poses, for messages */
     method_word method;   /* now */

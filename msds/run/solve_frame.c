@@ -34,6 +34,7 @@ static int write_frame(session *s, const frame_input *from, err *e)
     if (!u || s->device->get(s->state, MSDS_DISPLACEMENT, u->f64, e))
         goto out;
     inverted_count(&s->inverted, u->f64, from->time);
+    openness_measure(&s->openness, u->f64, from->time);
     model_array *v = frame_add(&f, &s->m, "node.velocity", e);
     if (!v || s->device->get(s->state, MSDS_VELOCITY, v->f64, e))
         goto out;

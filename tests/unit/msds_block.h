@@ -37,19 +37,24 @@ static inline model_array *tets_array(model *m, const char *name)
     return a;
 }
 
-/* The tables that every model has: one volume of one material. */
-static inline void tets_tables(const tets *b, model *m)
+/* The tables that every model has: volumes of one material, the first called tissue. */
+static inline void tets_volumes(const tets *b, int volumes, model *m)
 {
     err e = {0};
     material of = materials_fallback();
     of.law = law_of_form(FORM_LINEAR), of.value[LAW_E] = b->young, of.value[LAW_nu] = b->poisson,
     of.density = b->density;
-    tets_must(!materials_make(m, &of, &e) && !model_axis_add(m, "volume", 1, &e), &e);
+    tets_must(!materials_make(m, &of, &e) && !model_axis_add(m, "volume", volumes, &e), &e);
     tets_array(m, "element.volume");
     tets_array(m, "volume.material");
     tets_array(m, "volume.level");
     tets_array(m, "volume.priority");
     tets_must(!model_set_text(tets_array(m, "volume.name"), 0, "tissue", &e), &e);
+}
+
+static inline void tets_tables(const tets *b, model *m)
+{
+    tets_volumes(b, 1, m);
 }
 
 /* The caller frees it. */

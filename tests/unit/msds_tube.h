@@ -1,11 +1,15 @@
 /* A tube about z of tetrahedra, and its lumen, as a model for msds: rings of nodes about an axis, cells between them
- * split into six along their diagonals, those at the axis into three. Volumes: 0 the wall, 1 the lumen. The nodes of
- * the axis are rigid: they hold the tube by no more than what a cavity's elements have.
+ * split into six along their diagonals, those at the axis into three. The nodes of the axis
+ * are rigid, which holds the lumen's mesh alone.
  */
 #ifndef SINEW_MSDS_TUBE_H
 #define SINEW_MSDS_TUBE_H
 
 #include "msds_block.h"
+
+enum { TUBE_WALL, TUBE_LUMEN };
+
+#define TUBE_PI 3.14159265358979
 
 typedef struct tube {
     int around, lumen, wall, along; /* cells: about the axis, from it to the wall, through the wall, along z */
@@ -22,8 +26,7 @@ static inline int32_t tube_node(const tube *t, int ring, int at, int level)
 
 static inline double tube_radius(const tube *t, int ring)
 {
-    return ring <= t->lumen ? t->radius * ring / t->lumen
-                            : t->radius + t->thickness * (ring - t->lumen) / t->wall;
+    return ring <= t->lumen ? t->radius * ring / t->lumen : t->radius + t->thickness * (ring - t->lumen) / t->wall;
 }
 
 static inline void tube_cell(const tube *t, int ring, int at, int level, int32_t *to, int64_t *count)
@@ -64,33 +67,34 @@ static inline void tube_make(const tube *t, model *m)
     const int64_t elements = (int64_t)t->around * t->along * (6 * (rings - 1) + 3);
     int64_t count = 0;
     tets_must(!model_axis_add(m, "node", nodes, &e) && !model_axis_add(m, "element", elements, &e), &e);
-    double *x = tets_array(m, "node.position")->f64;
+    tets_array(m, "node.position");
+    tets_array(m, "node.rigid");
+    tets_must(model_add_as(m, "element.node", MODEL_I32, "@node", "element", 4, &e) != NULL, &e);
+    const tets b = {.young = t->young, .poisson = t->poisson, .density = 1000};
+    tets_volumes(&b, 2, m);
+    double *x = model_find(m, "node.position")->f64;
+    int32_t *node = model_find(m, "element.node")->i32, *volume = model_find(m, "element.volume")->i32;
     for (int level = 0; level <= t->along; level++)
         for (int ring = 0; ring <= rings; ring++)
             for (int at = 0; at < (ring ? t->around : 1); at++) {
                 double *to = x + 3 * (int64_t)tube_node(t, ring, at, level);
-                const double angle = 2 * 3.14159265358979 * at / t->around;
+                const double angle = 2 * TUBE_PI * at / t->around;
                 const double r = tube_radius(t, ring) * (1 + t->oval * cos(2 * angle));
                 to[0] = r * cos(angle);
                 to[1] = r * sin(angle);
                 to[2] = t->length * level / t->along;
             }
-    model_array *node = model_add_as(m, "element.node", MODEL_I32, "@node", "element", 4, &e);
-    tets_must(node != NULL, &e);
-    const tets b = {.young = t->young, .poisson = t->poisson, .density = 1000};
-    tets_tables(&b, m);
-    int32_t *volume = model_find(m, "element.volume")->i32;
     for (int level = 0; level < t->along; level++)
         for (int ring = 0; ring < rings; ring++)
             for (int at = 0; at < t->around; at++) {
                 const int64_t from = count;
-                tube_cell(t, ring, at, level, node->i32, &count);
+                tube_cell(t, ring, at, level, node, &count);
                 for (int64_t i = from; i < count; i++)
-                    volume[i] = ring < t->lumen;
+                    volume[i] = ring < t->lumen ? TUBE_LUMEN : TUBE_WALL;
             }
     for (int64_t i = 0; i < count; i++)
-        tube_turn(node->i32 + 4 * i, x);
-    uint8_t *rigid = tets_array(m, "node.rigid")->u8;
+        tube_turn(node + 4 * i, x);
+    uint8_t *rigid = model_find(m, "node.rigid")->u8;
     for (int level = 0; level <= t->along; level++)
         rigid[tube_node(t, 0, 0, level)] = 1;
 }
