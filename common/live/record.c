@@ -393,6 +393,9 @@ int replay_next(replay *r, replay_kind *kind, keyfile *k, record_frame *f, err *
         return 0;
     }
     *kind = strcmp(k->word[0], "frame") ? REPLAY_CONTROL : REPLAY_FRAME;
+    if (!strcmp(k->word[0], "of") && k->count == 3)
+        return keyfile_error(k, e, "the record was made with %.100s %.200s, but this run has none; expected the same",
+                             k->word[1], k->word[2]);
     return *kind == REPLAY_FRAME && take_frame(k, f, e) ? -1 : 1;
 }
 

@@ -22,6 +22,9 @@ static const double fixed = .35;
 /* How far a node may go in a Newton step, in sides of a cell. */
 static const double stride = 2;
 
+/* The share of a step that is always tried. */
+static const double yielding = .02;
+
 /* A residual below which pressures are held for the next frame. */
 static const double balanced = .5;
 
@@ -342,22 +345,28 @@ static void shorten_work(void *context, int64_t chunk, int64_t from, int64_t to)
             t->step.x[a][i] *= t->alpha;
 }
 
-/* So that no node goes farther than it may, and walls do not cross; the latter not where the tissue would not yield to
- * what is left of the step. */
+static void shorten_by(tissue *t, double share)
+{
+    t->alpha = (float)share;
+    tissue_nodes(t, shorten_work);
+    t->moved *= share;
+}
+
+/* So that no node goes farther than it may, and walls do not cross: at their nodes alone, or where the tissue would not
+ * yield to what that leaves of the step, at all. */
 static void shorten(tissue *t)
 {
-    const double share = stride * t->pressed.p->side / longest(t);
-    if (share < 1) {
-        t->alpha = (float)share;
-        tissue_nodes(t, shorten_work);
-        t->moved *= share;
-    }
+    const double most = stride * t->pressed.p->side / longest(t);
+    if (most < 1)
+        shorten_by(t, most);
     if (t->m.walls == t->m.lumens)
         return;
     tissue_copy(t, &t->way, &t->step);
-    tissue_walls_spare(&t->m, &t->step, t->share);
-    if (!(dot(t, &t->first, &t->step) > t->moved))
-        tissue_copy(t, &t->step, &t->way);
+    const double least = tissue_walls_spare(&t->m, &t->step, t->share);
+    if (dot(t, &t->first, &t->step) > t->moved)
+        return;
+    tissue_copy(t, &t->step, &t->way);
+    shorten_by(t, fmax(least, yielding));
 }
 
 /* Goes along the step as far as that does not overshoot by much: what is left pulls along it, or back, by at most half

@@ -16,6 +16,8 @@ static const double meeting = .4;
 /* What a step leaves of an element's volume at least, and how much of it is taken in any case. */
 static const double left_most = .4, share_least = .02;
 
+enum { TURNS = 6 }; /* over the elements: what one leaves its nodes changes its neighbours */
+
 static double dot(const double a[3], const double b[3])
 {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -89,17 +91,19 @@ static double swollen(const double g[9])
     return stable_swelling(g, cofactors);
 }
 
-/* How much of a step an element of a cavity may take. */
-static double share_of(const tissue_mesh *m, int64_t group, int64_t lane, const lanes_field *step)
+/* How much an element of a cavity may take of a step that its nodes take shares of: 1, or less where it would lose too
+ * much of its volume. */
+static double share_of(const tissue_mesh *m, int64_t group, int64_t lane, const lanes_field *step, const float *share)
 {
+    const int32_t *node = m->node + 4 * group * LANES + lane;
     double g[9], to[9];
     for (int a = 0; a < 3; a++)
         for (int b = 0; b < 3; b++) {
             double sum = 0;
+            const double first = (double)step->x[a][node[0]] * (double)share[node[0]];
             for (int c = 0; c < 3; c++) {
-                const int32_t *node = m->node + 4 * group * LANES + lane;
-                const double by = (double)step->x[a][node[(c + 1) * LANES]] - (double)step->x[a][node[0]];
-                sum += by * gradient_at(m, group, lane, 3 * c + b);
+                const int32_t n = node[(c + 1) * LANES];
+                sum += ((double)step->x[a][n] * (double)share[n] - first) * gradient_at(m, group, lane, 3 * c + b);
             }
             g[3 * a + b] = (double)m->g[(9 * group + 3 * a + b) * LANES + lane];
             to[3 * a + b] = g[3 * a + b] + sum;
@@ -110,26 +114,35 @@ static double share_of(const tissue_mesh *m, int64_t group, int64_t lane, const 
     return fmax((1 - left_most) * from / (from - end), share_least);
 }
 
-void tissue_walls_spare(const tissue_mesh *m, lanes_field *step, float *share)
+/* Lessens shares where elements lose too much; tells whether there was any. */
+static bool lessen(const tissue_mesh *m, const lanes_field *step, float *share)
 {
-    for (int64_t i = 4 * m->lumens * LANES; i < 4 * m->walls * LANES; i++)
-        share[m->node[i]] = 1;
+    bool any = false;
     for (int64_t i = m->lumens * LANES; i < m->walls * LANES; i++) {
         const int64_t group = i / LANES, lane = i % LANES;
-        if (!(m->volume[i] > 0))
-            continue;
-        const float own = (float)share_of(m, group, lane, step);
-        for (int c = 0; c < 4; c++) {
-            float *of = &share[m->node[(4 * group + c) * LANES + lane]];
-            *of = own < *of ? own : *of;
-        }
+        const double own = m->volume[i] > 0 ? share_of(m, group, lane, step, share) : 1;
+        for (int c = 0; c < 4 && own < 1; c++)
+            share[m->node[(4 * group + c) * LANES + lane]] *= (float)own;
+        any = any || own < 1;
     }
+    return any;
+}
+
+double tissue_walls_spare(const tissue_mesh *m, lanes_field *step, float *share)
+{
+    double least = 1;
+    for (int64_t i = 4 * m->lumens * LANES; i < 4 * m->walls * LANES; i++)
+        share[m->node[i]] = 1;
+    for (int turn = 0; turn < TURNS && lessen(m, step, share);)
+        turn++;
     for (int64_t i = 4 * m->lumens * LANES; i < 4 * m->walls * LANES; i++) {
         const int32_t node = m->node[i];
+        least = fmin(least, (double)share[node]);
         for (int a = 0; a < 3; a++)
             step->x[a][node] *= share[node];
         share[node] = 1;
     }
+    return least;
 }
 
 /* The squares of cof F times the gradients of corners, of an element in a lane; corner 0 has the others' sum. */
