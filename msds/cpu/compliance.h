@@ -1,8 +1,8 @@
-/* What a probe's contact is to a factor of the stiffness matrix K: the compliance S = N^T K^-1 N between contacts, where
- * N has their directions; with a penalty, the compliance of its springs too. Its product with forces is of one of two
- * kinds, by which takes less work. For few contacts S is dense: its numbers are products of path vectors (factor.h),
- * which are kept from frame to frame. For many, each product is a solve: forward and backward through the fronts that
- * lead to contacts. The creator owns it.
+/* What a probe's contact is to a factor of the stiffness matrix K: the compliance S = N^T K^-1 N between contacts,
+ * where N has their directions; with a penalty, the compliance of its springs too. Its product with forces is of one of
+ * two kinds, by which takes less work. For few contacts S is dense: its numbers are products of path vectors
+ * (factor.h), which are kept from frame to frame. For many, each product is a solve: forward and backward through the
+ * factor. The creator owns it.
  */
 #ifndef SINEW_COMPLIANCE_H
 #define SINEW_COMPLIANCE_H

@@ -1,8 +1,8 @@
 /* The FEM solved to a tolerance each frame, with one factor of the stiffness matrix at rest. A probe's contact does
- * not change that factor: the forces f >= 0 that keep each node out of the probe are the minimum of a quadratic function
- * whose matrix is the compliance between contacts (compliance.h), which is found by products alone (mprgp.h), so that
- * thousands of nodes may touch. What rounding leaves over (the factor is float), the next solve takes out; where elements
- * turn, whose factor it is not, mixing.h makes the most of the solves. The creator owns it.
+ * not change that factor: the forces f >= 0 that keep each node out of the probe are the minimum of a quadratic
+ * function, whose matrix is the compliance between contacts (compliance.h), and which takes products with it alone
+ * (mprgp.h), so that thousands of nodes may touch. What rounding leaves over (the factor is float), the next solve
+ * takes out; where elements turn, whose factor it is not, mixing.h makes the most of the solves. The creator owns it.
  */
 #ifndef SINEW_EXACT_H
 #define SINEW_EXACT_H

@@ -1,10 +1,11 @@
 /* Modified proportioning with reduced gradient projections (MPRGP; Dostal & Schoberl 2005, Computational Optimization
- * and Applications 30:23; Gamma = 1), for forces of contact: the minimum of x.S x / 2 - w.x over x >= 0, by products with
- * S alone, which is symmetric and positive definite. Conjugate gradients go over the components above 0. Where one comes
- * to 0, that and the others which the step would lead below 0 are held there (the projected step of Kruzik, Horak,
- * Cermak, Pospisil & Pecha 2020, Advances in Engineering Software 148:102895); where what is left pulls more on
- * components that are held than on the others, those are let go. tissue.c does the same with planes as bounds of
- * displacements, where S changes and need not be positive. The creator owns it; it takes no memory after it is made.
+ * and Applications 30:23; Gamma = 1), for forces of contact: the minimum of x.S x / 2 - w.x over x >= 0, by products
+ * with S alone, which is symmetric and positive definite. Conjugate gradients go over the components above 0. Where one
+ * comes to 0, that and the others which the step would lead below 0 are held there (the projected step of Kruzik,
+ * Horak, Cermak, Pospisil & Pecha 2020, Active set expansion strategies in MPRGP algorithm); where what is left pulls
+ * more on components that are held than on the others, those are let go. tissue.c does the same with planes as bounds
+ * of displacements, in the order of its fields, and where S changes and need not be positive. The creator owns it; it
+ * takes no memory after it is made.
  */
 #ifndef SINEW_MPRGP_H
 #define SINEW_MPRGP_H
