@@ -47,6 +47,11 @@ void compliance_free(compliance *s)
     *s = (compliance){0};
 }
 
+int64_t compliance_bytes(const compliance *s)
+{
+    return 4 * (s->room + s->normal_room) + 8 * s->schur_room;
+}
+
 void compliance_tell(compliance *s, const char *what, double share)
 {
     if (!s->listener)

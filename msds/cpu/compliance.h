@@ -39,6 +39,9 @@ typedef struct compliance {
 int compliance_make(compliance *s, const msds_problem *p, factor *f, const contacts *c, pool *threads, err *e);
 void compliance_free(compliance *s);
 
+/* Of paths and of a dense S, by now. */
+int64_t compliance_bytes(const compliance *s);
+
 /* Tells of work on contact; share: of what, 0 to 1. */
 void compliance_tell(compliance *s, const char *what, double share);
 
