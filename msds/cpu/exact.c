@@ -6,12 +6,35 @@
 #include <string.h>
 
 enum {
-    PATHS_MOST = 2048, /* kept; past that all are forgotten */
-    BATCH = 16,        /* paths made side by side */
-    ROWS = 64,         /* of the Schur complement, likewise */
-    STALE = 20,        /* solves of one frame by one factor at most, where elements turn */
-    SWEEPS = 2000      /* of the complementarity problem; the next solve takes over what is left */
+    STALE = 20,     /* solves of one frame by one factor at most, where elements turn */
+    PRODUCTS = 2000 /* for the forces of a solve; the next one takes over what is left */
 };
+
+/* Forces are found so well that no node is off by more than this share of how far the farthest is moved, nor by more
+ * than the second of what a frame may leave. */
+static const double fine = 1e-7, finest = .1;
+
+/* But where elements turn, and other solves follow, this share of what is left is enough. */
+static const double forcing = 1e-3;
+
+static void tell(exact *x, const char *what, double share)
+{
+    compliance *s = &x->compliance;
+    s->now.solve = x->solves + 1;
+    s->now.residual = x->residual;
+    compliance_tell(s, what, share);
+}
+
+static void multiply(void *context, const double *force, double *product)
+{
+    exact *x = context;
+    compliance_multiply(&x->compliance, force, product);
+}
+
+static void tell_forces(void *context, double share)
+{
+    tell(context, "forces on them", share);
+}
 
 int exact_make(exact *x, const msds_problem *p, stiffness *k, contacts *c, const lanes *loops, pool *threads, err *e)
 {
@@ -19,18 +42,15 @@ int exact_make(exact *x, const msds_problem *p, stiffness *k, contacts *c, const
     x->k = k;
     x->c = c;
     x->threads = threads;
-    x->factor.listener = x->listener;
+    x->factor.listener = x->compliance.listener = x->listener;
     if (factor_make(&x->factor, p, k, loops, threads, e))
         return -1;
     x->left = mem_array(p->nodes, 3 * sizeof *x->left, "the solver", e);
     x->inner = mem_array(p->nodes, 3 * sizeof *x->inner, "the solver", e);
     x->step = mem_array(p->nodes, 3 * sizeof *x->step, "the solver", e);
-    x->cached = mem_array(p->nodes, sizeof *x->cached, "the solver", e);
-    x->work = mem_array((int64_t)BATCH * 3 * x->factor.largest, sizeof *x->work, "the solver", e);
-    if (!x->left || !x->inner || !x->step || !x->cached || !x->work)
+    if (!x->left || !x->inner || !x->step || compliance_make(&x->compliance, p, &x->factor, c, threads, e) ||
+        mprgp_make(&x->forces, p->nodes, e))
         return -1;
-    for (int64_t n = 0; n < p->nodes; n++)
-        x->cached[n] = -1;
     if (!k->turn)
         return 0;
     x->slight = p->slight;
@@ -45,181 +65,30 @@ void exact_free(exact *x)
     free(x->left);
     free(x->inner);
     free(x->step);
-    free(x->cached);
-    free(x->whose);
-    free(x->path);
-    free(x->work);
-    free(x->normal);
-    free(x->schur);
-    free(x->want);
-    free(x->force);
+    compliance_free(&x->compliance);
+    mprgp_free(&x->forces);
     free(x->state);
     free(x->by);
     mixing_free(&x->mixing);
     *x = (exact){0};
 }
 
-static void tell(const exact *x, const char *what, int64_t done, int64_t all)
+void exact_moved(exact *x, stiffness *k, pool *threads)
 {
-    const msds_progress now = {what, all ? (double)done / (double)all : 0, x->solves + 1, x->residual, x->c->count};
-    if (x->listener)
-        x->listener->at(x->listener->context, &now);
-}
-
-static float *path_at(const exact *x, int64_t i)
-{
-    return x->path + 3 * i * x->factor.path;
-}
-
-static void path_work(void *context, int64_t chunk, int64_t from, int64_t to)
-{
-    exact *x = context;
-    (void)chunk;
-    for (int64_t i = from; i < to; i++)
-        factor_path(&x->factor, x->whose[x->fresh + i], x->work + 3 * i * x->factor.largest, path_at(x, x->fresh + i),
-                    x->factor.path);
-}
-
-static int make_batch(exact *x, const int32_t *node, int64_t count, err *e)
-{
-    if (MEM_ROOM(&x->path, &x->room, (x->paths + count) * 3 * x->factor.path, "contact", e) ||
-        MEM_ROOM(&x->whose, &x->whose_room, x->paths + count, "contact", e))
-        return -1;
-    x->fresh = x->paths;
-    for (int64_t i = 0; i < count; i++) {
-        x->whose[x->fresh + i] = node[i];
-        x->cached[node[i]] = (int32_t)(x->fresh + i);
-    }
-    pool_run(x->threads, count, 1, path_work, x);
-    x->paths += count;
-    return 0;
-}
-
-static void forget_paths(exact *x)
-{
-    for (int64_t i = 0; i < x->paths; i++)
-        x->cached[x->whose[i]] = -1;
-    x->paths = 0;
-}
-
-/* Paths of all contacts, of which most are known from the frame before. */
-static int make_paths(exact *x, err *e)
-{
-    int32_t batch[BATCH];
-    int64_t count = 0, missing = 0;
-    for (int64_t i = 0; i < x->c->count; i++)
-        missing += x->cached[x->c->list[i].node] < 0;
-    if (missing && x->paths + missing > PATHS_MOST) {
-        forget_paths(x);
-    }
-    for (int64_t i = 0; i < x->c->count; i++) {
-        if (x->cached[x->c->list[i].node] < 0)
-            batch[count++] = x->c->list[i].node;
-        if (count == BATCH || (count && i == x->c->count - 1)) {
-            tell(x, "solving for unit loads on them", i, x->c->count);
-            if (make_batch(x, batch, count, e))
-                return -1;
-            count = 0;
-        }
-    }
-    return 0;
-}
-
-static void normal_work(void *context, int64_t chunk, int64_t from, int64_t to)
-{
-    exact *x = context;
-    const int64_t stride = x->factor.path;
-    (void)chunk;
-    for (int64_t i = from; i < to; i++) {
-        const contact *c = &x->c->list[i];
-        const float *path = path_at(x, x->cached[c->node]);
-        const float way[3] = {(float)c->way[0], (float)c->way[1], (float)c->way[2]};
-        float *to_normal = x->normal + i * stride;
-        for (int64_t k = 0; k < factor_path_length(&x->factor, c->node); k++)
-            to_normal[k] = way[0] * path[k] + way[1] * path[stride + k] + way[2] * path[2 * stride + k];
-    }
-}
-
-/* Eight sums side by side: the order is fixed, and compilers make vectors of it. */
-static double product(const float *a, const float *b, int64_t count)
-{
-    double sum[8] = {0}, rest = 0;
-    int64_t i = 0;
-    for (; i + 8 <= count; i += 8)
-        for (int l = 0; l < 8; l++)
-            sum[l] += (double)(a[i + l] * b[i + l]);
-    for (; i < count; i++)
-        rest += (double)(a[i] * b[i]);
-    return ((sum[0] + sum[1]) + (sum[2] + sum[3])) + ((sum[4] + sum[5]) + (sum[6] + sum[7])) + rest;
-}
-
-static void schur_work(void *context, int64_t chunk, int64_t from, int64_t to)
-{
-    exact *x = context;
-    const int64_t count = x->c->count, stride = x->factor.path;
-    (void)chunk;
-    for (int64_t i = x->row + from; i < x->row + to; i++)
-        for (int64_t j = 0; j <= i; j++) {
-            int64_t shared = factor_shared(&x->factor, x->c->list[i].node, x->c->list[j].node);
-            x->schur[i * count + j] = x->schur[j * count + i] =
-                product(x->normal + i * stride, x->normal + j * stride, shared);
-        }
-}
-
-static int make_schur(exact *x, err *e)
-{
-    const int64_t count = x->c->count;
-    if (!count)
-        return 0;
-    if (make_paths(x, e) || MEM_ROOM(&x->normal, &x->normal_room, count * x->factor.path, "contact", e) ||
-        MEM_ROOM(&x->schur, &x->schur_room, count * count, "contact", e) ||
-        MEM_ROOM(&x->want, &x->want_room, count, "contact", e) ||
-        MEM_ROOM(&x->force, &x->force_room, count, "contact", e))
-        return -1;
-    pool_run(x->threads, count, 1, normal_work, x);
-    for (x->row = 0; x->row < count; x->row += ROWS) {
-        tell(x, "compliances between them", x->row * x->row, count * count);
-        pool_run(x->threads, count - x->row < ROWS ? count - x->row : ROWS, 1, schur_work, x);
-    }
-    for (int64_t i = 0; i < count && x->p->options.penalty; i++)
-        x->schur[i * count + i] += 1 / x->p->repulsion[x->c->list[i].node];
-    return 0;
-}
-
-/* Finds f >= 0 with S f - want >= 0 and one of the two 0, by Gauss and Seidel's sweeps, from the forces of now. */
-static void solve_forces(exact *x)
-{
-    const int64_t count = x->c->count;
-    double scale = 0;
-    for (int64_t i = 0; i < count; i++) {
-        x->force[i] = x->c->list[i].force;
-        scale = fmax(scale, fabs(x->want[i]));
-    }
-    for (int sweep = 0; sweep < SWEEPS; sweep++) {
-        double moved = 0;
-        tell(x, "sweeps over contact, of 2000 at most", sweep, SWEEPS);
-        for (int64_t i = 0; i < count; i++) {
-            const double *row = x->schur + i * count;
-            double sum = x->want[i];
-            for (int64_t j = 0; j < count; j++)
-                sum -= row[j] * x->force[j];
-            double to = fmax(0, x->force[i] + sum / row[i]);
-            moved = fmax(moved, fabs(to - x->force[i]) * row[i]);
-            x->force[i] = to;
-        }
-        if (moved <= 1e-9 * scale)
-            break;
-    }
+    x->k = k;
+    x->threads = x->factor.threads = x->compliance.threads = threads;
+    x->factor.k = k;
+    x->compliance.factor = &x->factor;
 }
 
 /* How far contact i still has to go: m. */
 static double still_to_go(const exact *x, const double *u, int64_t i)
 {
     const contact *c = &x->c->list[i];
-    double gone = 0;
+    double moved = 0;
     for (int a = 0; a < 3; a++)
-        gone += c->way[a] * (u[3 * (int64_t)c->node + a] - c->from[a]);
-    return c->depth - gone - (x->p->options.penalty ? c->force / x->p->repulsion[c->node] : 0);
+        moved += c->way[a] * (u[3 * (int64_t)c->node + a] - c->from[a]);
+    return c->depth - moved - (x->p->options.penalty ? c->force / x->p->repulsion[c->node] : 0);
 }
 
 /* Fills x->left: gravity, contact and minus the elements' pulls. Returns its norm over that of the load or the pull,
@@ -252,24 +121,50 @@ static double find_left(exact *x, const double *u, bool begins)
     return load > 0 ? sqrt(left / load) : 0;
 }
 
-/* One solve: u and the contact forces. */
-static void improve(exact *x, double *u)
+/* How far u moves a contact its way, m. */
+static double gone(const contact *c, const double *u)
 {
-    contacts *c = x->c;
-    const int64_t count = c->count, stride = x->factor.path;
-    factor_forward(&x->factor, x->left);
-    for (int64_t i = 0; i < count; i++) {
-        x->want[i] = still_to_go(x, u, i) - factor_dot(&x->factor, c->list[i].node, x->normal + i * stride);
-        for (int64_t j = 0; j < count; j++)
-            x->want[i] += x->schur[i * count + j] * c->list[j].force;
+    double sum = 0;
+    for (int a = 0; a < 3; a++)
+        sum += c->way[a] * u[3 * (int64_t)c->node + a];
+    return sum;
+}
+
+/* Finds f >= 0 with S f - want >= 0 and one of the two 0, from the forces of now, with which what is left leads
+ * contacts on by m->product; place: m, what a frame may leave. */
+static void solve_forces(exact *x, const double *u, double place)
+{
+    mprgp *m = &x->forces;
+    double far = 0; /* m: how far the farthest is moved, or has to go */
+    m->count = x->c->count;
+    for (int64_t i = 0; i < m->count; i++) {
+        const contact *c = &x->c->list[i];
+        m->x[i] = c->force;
+        m->g[i] = m->product[i] - still_to_go(x, u, i);
+        m->inverse[i] = compliance_inverse(&x->compliance, c);
+        far = fmax(far, fmax(fabs(gone(c, u) + m->product[i]), -m->g[i]));
     }
-    if (count)
-        solve_forces(x);
-    for (int64_t i = 0; i < count; i++) {
-        factor_add(&x->factor, c->list[i].node, x->normal + i * stride, x->force[i] - c->list[i].force);
-        c->list[i].force = x->force[i];
+    if (x->solves == 0)
+        mprgp_scale(m);
+    const double rough = x->k->turn ? forcing * fmin(1, x->residual) * far : 0;
+    mprgp_solve(m, fmax(rough, fmin(fine * far, finest * place)), PRODUCTS);
+}
+
+/* One solve: u and the contact forces. */
+static void improve(exact *x, double *u, double place)
+{
+    mprgp *m = &x->forces;
+    m->context = x;
+    m->multiply = multiply;
+    m->tell = tell_forces;
+    compliance_lead(&x->compliance, x->left, m->product);
+    solve_forces(x, u, place);
+    for (int64_t i = 0; i < m->count; i++) {
+        const double force = m->x[i];
+        m->x[i] -= x->c->list[i].force;
+        x->c->list[i].force = force;
     }
-    factor_backward(&x->factor, x->step);
+    compliance_follow(&x->compliance, m->x, x->step);
     for (int64_t i = 0; i < 3 * x->p->nodes; i++)
         u[i] += x->step[i];
     x->solves++;
@@ -285,11 +180,11 @@ static void gather_state(const exact *x, const double *u, double *to)
 }
 
 /* One solve where elements turn, and what follows from those before. */
-static void improve_turned(exact *x, double *u)
+static void improve_turned(exact *x, double *u, double place)
 {
     const int64_t nodes = x->p->nodes;
     gather_state(x, u, x->state);
-    improve(x, u);
+    improve(x, u, place);
     gather_state(x, u, x->by);
     for (int64_t i = 0; i < 4 * nodes; i++)
         x->by[i] -= x->state[i];
@@ -314,21 +209,23 @@ static bool in_place(const exact *x, const double *u, double tolerance)
 static int turn_again(exact *x, const double *u, err *e)
 {
     stiffness_warp(x->k, u, true);
-    forget_paths(x);
-    return factor_again(&x->factor, e) || make_schur(x, e) ? -1 : 0;
+    compliance_forget(&x->compliance);
+    return factor_again(&x->factor, e) || compliance_begin(&x->compliance, e) ? -1 : 0;
 }
 
 int exact_solve(exact *x, double *u, bool first, double tolerance, double reach, err *e)
 {
     x->solves = 0;
     x->residual = NAN;
-    if (make_schur(x, e))
+    const double place = tolerance * reach;
+    tell(x, "solving", 0);
+    if (compliance_begin(&x->compliance, e))
         return -1;
     mixing_begin(&x->mixing);
     int fresh = 0; /* the solve that the factor was made for */
     x->residual = find_left(x, u, first);
-    while (x->residual > tolerance || !in_place(x, u, tolerance * reach)) {
-        tell(x, "solving", 0, 0);
+    while (x->residual > tolerance || !in_place(x, u, place)) {
+        tell(x, "solving", 0);
         if (x->solves == EXACT_SOLVES || !isfinite(x->residual))
             return err_set(e, NULL, 0, "after %d solves the residual is still %.3g; expected %.3g", x->solves,
                            x->residual, tolerance);
@@ -339,9 +236,9 @@ int exact_solve(exact *x, double *u, bool first, double tolerance, double reach,
             mixing_begin(&x->mixing);
         }
         if (x->k->turn)
-            improve_turned(x, u);
+            improve_turned(x, u, place);
         else
-            improve(x, u);
+            improve(x, u, place);
         x->residual = find_left(x, u, false);
     }
     return 0;

@@ -73,9 +73,8 @@ void exact_making_take(exact_making *m, stiffness *k, exact *x, pool *threads)
     *x = m->x;
     m->k = (stiffness){0};
     m->x = (exact){0};
-    k->threads = x->threads = x->factor.threads = threads;
-    x->k = k;
-    x->factor.k = k;
+    k->threads = threads;
+    exact_moved(x, k, threads);
     x->factor.stop = NULL;
     exact_making_free(m);
 }

@@ -460,7 +460,8 @@ static int64_t cpu_bytes(const cpu_state *s)
         if (f->cg)
             bytes += matrix + s->order.slots * LANES * 36;
         if (f->exact)
-            bytes += matrix + f->exact->factor.numbers * 4 + f->exact->room * 4;
+            bytes +=
+                matrix + s->p->nodes * 196 + f->exact->factor.numbers * 4 + compliance_bytes(&f->exact->compliance);
     }
     return bytes + (s->tissue ? tissue_bytes(s->tissue) : 0);
 }

@@ -2,11 +2,13 @@
  * beside, as do OpenTissue's at the largest (one thread; as the project was given them, not measured here): CSV, with a
  * probe of the machine in the same run, the rounds of all interleaved. A sphere presses the block, deeper with each
  * frame, and starts again. At the largest, each shape of probe too; and what one node costs, by closed form and by
- * libccd. `bench_msds [THREADS [ROUNDS]]`.
+ * libccd. Last, exact frames of a flat probe that touches few nodes of a slab, or all 961: the factor and five frames.
+ * `bench_msds [THREADS [ROUNDS]]`.
  */
 // needs: tests/bench/bench.c msds/mesh/mesh_tets.c msds/problem/problem.c msds/problem/springs.c msds/problem/sell.c
 // needs: msds/cpu/lanes.c msds/cpu/lanes_loops.c msds/cpu/contacts.c
 // needs: msds/problem/stiffness.c msds/cpu/dissect.c msds/cpu/factor.c msds/cpu/exact.c msds/cpu/mixing.c msds/cpu/cg.c
+// needs: msds/cpu/compliance.c msds/cpu/mprgp.c
 // needs: msds/cpu/exact_making.c msds/cpu/msds_cpu.c msds/run/msds_executors.c msds/problem/largest.c
 // needs: msds/cpu/tissue.c msds/cpu/tissue_mesh.c msds/cpu/tissue_sums.c msds/cpu/tissue_work.c
 // needs: msds/cpu/tissue_walls.c msds/cpu/tissue_rest.c msds/problem/cavity.c
@@ -145,6 +147,70 @@ static void measure(subject *s)
         }
 }
 
+/* The factor and five exact frames of a slab, under a flat probe that touches so many of 31 x 31 nodes. */
+enum { SLABS = 2, SLAB_FRAMES = 5 };
+
+static const char *const slab_names[SLABS] = {"5 exact frames of 121 touching", "5 exact frames of 961 touching"};
+static const double slab_wide[SLABS] = {.044, .14};
+static const int64_t slab_touching[SLABS] = {121, 961};
+
+typedef struct slab {
+    model m;
+    msds_problem p;
+    double took[SLABS][BENCH_ROUNDS];
+    int count;
+} slab;
+
+static void make_slab(slab *s)
+{
+    err e = {0};
+    tets b = {{31, 31, 6}, {.12, .12, .02}, 1e4, .45, 1000, 2, false};
+    msds_options o = tets_options();
+    tets_make(&b, &s->m);
+    bench_must(!msds_problem_make(&s->p, &s->m, &o, &e), &e);
+    s->p.mass_factor = 1;
+}
+
+static void measure_slab(slab *s, pool *threads)
+{
+    err e = {0};
+    for (int i = 0; i < SLABS; i++) {
+        const probe flat = probe_linear(slab_wide[i], slab_wide[i], .001);
+        msds_plan plan = tets_plan(MSDS_EXACT);
+        msds_reading reading;
+        const double start = bench_clock();
+        msds_state *state = msds_cpu.create(&s->p, threads, &e);
+        bench_must(state != NULL, &e);
+        plan.touched = true;
+        for (int number = 1; number <= SLAB_FRAMES; number++) {
+            const pose at = {{.06, .06, .02 - .0004 * number}, {1, 0, 0, 0}};
+            plan.probe = probe_place(&flat, &at);
+            bench_must(!msds_cpu.step(state, &plan, ITERATIONS, &e), &e);
+        }
+        s->took[i][s->count] = bench_clock() - start;
+        bench_must(!msds_cpu.monitor(state, &reading, &e), &e);
+        if (reading.contacts != slab_touching[i])
+            bench_must(err_set(&e, NULL, 0, "%lld nodes touch; expected %lld", (long long)reading.contacts,
+                               (long long)slab_touching[i]) == 0,
+                       &e);
+        msds_cpu.destroy(state);
+    }
+    s->count++;
+}
+
+static void say_slab(slab *s, int threads)
+{
+    for (int i = 0; i < SLABS; i++) {
+        double *t = s->took[i];
+        bench_sort(t, s->count);
+        printf("31x31x6,%lld,%lld,%lld,%s,%d,%d,%.4g,%.4g,%.4g,,\n", (long long)s->p.nodes, (long long)s->p.elements,
+               (long long)s->p.springs, slab_names[i], threads, s->count, 1e3 * t[0], 1e3 * t[s->count / 2],
+               1e3 * t[s->count - 1 - s->count / 20]);
+    }
+    msds_problem_free(&s->p);
+    model_free(&s->m);
+}
+
 static void say(subject *s, const paper *from, int threads)
 {
     for (int i = 0; i < METHODS; i++) {
@@ -174,6 +240,7 @@ int main(int argc, char **argv)
 {
     static subject subjects[SIZES];
     static bench probes;
+    static slab flat;
     shape shapes[SHAPES] = {
         {probe_sphere(.02), "collision: sphere", "depth: sphere, closed form", "depth: sphere, libccd"},
         {probe_linear(.04, .01, .0025), "collision: linear", "depth: linear, closed form", "depth: linear, libccd"},
@@ -190,6 +257,7 @@ int main(int argc, char **argv)
     bench_must(workers != NULL, &e);
     for (int i = 0; i < SIZES; i++)
         make(&subjects[i], &papers[i], workers);
+    make_slab(&flat);
     for (int round = 0; round < rounds; round++) {
         bench_probe(&probes);
         bench_probe_threads(&probes, workers);
@@ -197,10 +265,12 @@ int main(int argc, char **argv)
             measure(&subjects[i]);
         for (int i = 0; i < SHAPES; i++)
             measure_shape(&probes, &shapes[i], subjects[SIZES - 1].state[METHODS - 1]);
+        measure_slab(&flat, workers);
     }
     printf("mesh,nodes,tetrahedra,springs,method,threads,frames,best_ms,median_ms,p95_ms,paper_ms,opentissue_ms\n");
     for (int i = 0; i < SIZES; i++)
         say(&subjects[i], &papers[i], threads);
+    say_slab(&flat, threads);
     bench_print(&probes);
     probe_free(&shapes[SHAPES - 1].of);
     pool_destroy(workers);

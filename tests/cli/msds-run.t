@@ -151,14 +151,14 @@ for method in msds 'fem' 'fem --exact' 'fem --warp' 'fem --exact --warp'; do
 done
 
 # Exact frames of a plate on a slab take long: on a terminal it is shown which pose and what of it, and a pipe and -q see nothing.
-msds-mesh -q --nodes 41x41x4 --size 8cm,8cm,1cm --young 10000 --poisson 0.4 >"$T/slab.sinew"
+msds-mesh -q --nodes 71x71x4 --size 8cm,8cm,1cm --young 10000 --poisson 0.4999 >"$T/slab.sinew"
 echo '0 .04 .04 .0095 1 0 0 0' >"$T/slab.tum"
 slab="--threads 1 --method fem --exact --probe linear:7cm,7cm --poses $T/slab.tum -o $T/slab.out"
 if have script; then
     script -qec "msds-run $slab <$T/slab.sinew" /dev/null >"$T/shown"
     tr '\r' '\n' <"$T/shown" >"$T/lines"
     is "$(grep -c '^msds-run: pose 1, 0 s: solve 1, .*[1-9][0-9]* nodes near the probe: [a-z ]*, [0-9]* %' "$T/lines" |
-        awk '{ print ($1 > 2) }')" 1 "progress within a pose"
+        awk '{ print ($1 > 1) }')" 1 "progress within a pose"
     is "$(tail -c 4 "$T/shown" | od -An -c | tr -d ' \n')" '\r033[K' "the line is cleared at the end"
     script -qec "msds-run -q $slab <$T/slab.sinew" /dev/null >"$T/shown"
     is "$(grep -c pose "$T/shown")" 0 "none with -q"
