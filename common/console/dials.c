@@ -32,6 +32,7 @@ static const dial slice[] = {
     {"depth", "m", "0.05", "depth of the image along a beam", 1e-3, 1, NULL},
     {"width", "m", "0", "width of the image; 0: the array's", 0, 1, NULL},
     {"thickness", "m", "0", "thickness of the beam; 0: one slice", 0, .1, NULL},
+    {"coupling", "m", "0", "gel: lines are dark where the face is farther from tissue; 0: none", 0, .1, NULL},
     {"freeze", "", "off", "the image stays as it is", 0, 0, "on|off"},
     {"labels", "", "on", "labels are tinted", 0, 0, "on|off"},
     {0},
