@@ -126,7 +126,8 @@ static int take_frames(session *s, err *e)
 
 int session_start(session *s, err *e)
 {
-    if (take_frames(s, e) || inverted_make(&s->inverted, &s->problem, s->threads, e))
+    if (take_frames(s, e) || press_bones(&s->press, &s->m, e) ||
+        inverted_make(&s->inverted, &s->problem, s->threads, e))
         return -1;
     s->state = s->device->create(&s->problem, s->threads, e);
     if (!s->state)

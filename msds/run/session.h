@@ -69,7 +69,9 @@ typedef struct session {
     bool pressed; /* some node, in some frame */
     bool dented;  /* the skin */
     bool inside_told;
-    bool diverged; /* in the last frame */
+    int64_t stopped;      /* frames in which bone kept the probe from its pose */
+    double stopped_first; /* s: the first of them */
+    bool diverged;        /* in the last frame */
     notes warnings;
     char *text[SESSION_TEXTS]; /* of settings that changed, which the options point to; owned */
 } session;

@@ -7,7 +7,7 @@
 // needs: msds/problem/stiffness.c msds/cpu/dissect.c msds/cpu/factor.c msds/cpu/exact.c msds/cpu/mixing.c msds/cpu/cg.c
 // needs: msds/cpu/exact_making.c msds/cpu/msds_cpu.c msds/run/msds_executors.c msds/problem/largest.c
 // needs: msds/cpu/tissue.c msds/cpu/tissue_mesh.c
-// needs: msds/run/press.c
+// needs: msds/run/press.c msds/run/bones.c
 #include "msds_block.h"
 
 #include "base/clock.h"
