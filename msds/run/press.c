@@ -119,11 +119,11 @@ static pose drawn_back(const press *s, const pose *at, double by)
     return back;
 }
 
-static double step_between(const press *s, const pose *at)
+static double apart(const pose *a, const pose *b)
 {
     double square = 0;
-    for (int a = 0; a < 3; a++)
-        square += (at->position[a] - s->last.position[a]) * (at->position[a] - s->last.position[a]);
+    for (int i = 0; i < 3; i++)
+        square += (a->position[i] - b->position[i]) * (a->position[i] - b->position[i]);
     return sqrt(square);
 }
 
@@ -250,15 +250,34 @@ static void divide(const press *s, const screw *way, double from, double to, con
     m->swept = true;
 }
 
+/* A probe that bone stops, at a share of its way, may slide along it instead: toward where bone stops it as it comes
+ * down on its pose along its own axis. Where that gets it nearer to its pose, this is the way. Returns its share. */
+static double slide(const press *s, screw *way, double share)
+{
+    const pose at = way->to, stop = screw_at(way, share), above = drawn_back(s, &at, probe_lever(s->shape));
+    const probe_placed placed = probe_place(s->shape, &above);
+    if (!(bones_gap(&s->bones, &placed, s->shape->size) > 0))
+        return share;
+    const screw down = screw_of(&above, &at);
+    const pose on = screw_at(&down, bones_stop(&s->bones, s->shape, &down));
+    const screw other = screw_of(&way->from, &on);
+    const double other_share = bones_stop(&s->bones, s->shape, &other);
+    const pose end = screw_at(&other, other_share);
+    if (apart(&end, &at) >= apart(&stop, &at))
+        return share;
+    *way = other;
+    return other_share;
+}
+
 /* Where the probe jumps, its moves; where bone stops it, *to becomes where that is. A pose at which it touches nothing,
  * though bone is in the way, was come to by another way, which is not known. */
 static int sweep(press *s, const msds_executor *device, msds_state *state, const press_frame *f, pose *to,
                  press_moves *m, err *e)
 {
-    const screw way = screw_of(&s->last, &f->at);
-    const double share = bones_stop(&s->bones, s->shape, &way);
-    const double length = share * screw_length(&way, probe_lever(s->shape)), near = stride * s->shape->size;
-    if (share >= 1 && !(length > near))
+    screw way = screw_of(&s->last, &f->at);
+    double share = bones_stop(&s->bones, s->shape, &way);
+    const double lever = probe_lever(s->shape), near = stride * s->shape->size;
+    if (share >= 1 && !(screw_length(&way, lever) > near))
         return 0;
     if (device->get(state, MSDS_DISPLACEMENT, s->u, e))
         return -1;
@@ -267,7 +286,10 @@ static int sweep(press *s, const msds_executor *device, msds_state *state, const
         return 0;
     }
     m->stopped = share < 1;
+    if (m->stopped)
+        share = slide(s, &way, share);
     *to = screw_at(&way, share);
+    const double length = share * screw_length(&way, lever);
     const double from = length > near ? fly(s, &way, share) : share;
     if (from < share)
         divide(s, &way, from, share, f, m);
@@ -277,7 +299,7 @@ static int sweep(press *s, const msds_executor *device, msds_state *state, const
 static int look(press *s, const msds_executor *device, msds_state *state, const pose *at, press_moves *m, err *e)
 {
     const double size = s->shape->size;
-    if (s->any && (s->contacts || step_between(s, at) <= inside_later * size))
+    if (s->any && (s->contacts || apart(&s->last, at) <= inside_later * size))
         return 0;
     if (device->get(state, MSDS_DISPLACEMENT, s->u, e))
         return -1;

@@ -64,6 +64,12 @@ for probe in sphere:5mm linear:12mm,10mm curved:3cm,40,8mm; do
         "a jump ends there, and the next leaves it"
 done
 
+# Pressed onto bone and moved along it, it slides.
+awk 'BEGIN { for (i = 0; i <= 20; i++) printf "%.7f %.4f .02 %.4f 1 0 0 0\n", i / 60, .015 + .0005 * i, i ? .008 : .0205 }' >"$T/slide.tum"
+check "along bone" msds-run --text --method fem --probe linear:8mm,6mm --poses "$T/slide.tum" -o "$T/run.sinew" <"$T/bone.sinew"
+is "$(sinew info --tsv probe.pose "$T/run.sinew" | awk 'NR > 2 { want = .015 + .0005 * (NR - 2); bad += ($3 - want) ^ 2 > 1e-8 || $5 < .01001 || $5 > .01006 } END { print NR, bad + 0 }')" \
+    "22 0" "it is over its poses, to .1 mm, on bone"
+
 # From one side of it to the other, through the air below: it was led around, so nothing moves. At once in bone: it comes down along its axis.
 printf '0 -.02 .02 -.03 0 0 0 1\n.1 .02 .02 .05 1 0 0 0\n' >"$T/around.tum"
 check "around bone" msds-run --text --method fem --probe sphere:5mm --poses "$T/around.tum" -o "$T/run.sinew" <"$T/bone.sinew"
