@@ -18,6 +18,7 @@ static const dial msds[] = {
     {"spring-scale", "m", "auto", "stiffness of a spring over Young's modulus, or auto", 0, 0, NULL},
     {"repulsion", "", "1", "contact stiffness over that of a node's springs", 0, 100, NULL},
     {"contact", "", "prescribed", "contact in finite elements", 0, 0, "prescribed|penalty"},
+    {"friction", "", "0", "friction with the probe: fem, warp, tissue", 0, 10, NULL},
     {"gravity", "m/s2", "0,0,0", "gravity", 0, 0, NULL},
     {"skin-stiffness", "N/m", "100", "stiffness of the edges of a skin of its own", 1e-9, 1e9, NULL},
     {"skin-anchors", "", "0.01", "stiffness of a vertex's anchor over that of its springs", 1e-6, 1e6, NULL},

@@ -50,7 +50,8 @@ pose screw_at(const screw *s, double share)
     if (share <= 0 || share >= 1)
         return share >= 1 ? s->to : s->from;
     const double t = share * s->angle, half = t / 2;
-    const double along = t > 0 ? sin(half) * sin(half) / half : 0, twice = t > slight ? 1 - sin(t) / t : t * t / 6;
+    const double along = t > 0 ? sin(half) * sin(half) / half : 0;
+    const double twice = t > slight ? 1 - sin(t) / t : t * t / 6;
     pose turn = {.quaternion = {s->axis[0] * sin(half), s->axis[1] * sin(half), s->axis[2] * sin(half), cos(half)}};
     pose at = pose_compose(&turn, &s->from);
     double gone[3];

@@ -17,6 +17,7 @@
     X(FOLLOWERS, "pressure on a surface")                                                                              \
     X(WARP, "elements that turn: --warp")                                                                              \
     X(TISSUE, "the method tissue")                                                                                     \
+    X(FRICTION, "friction on a probe: --friction")                                                                     \
     X(HISTORY, "history of elements, which the law needs")                                                             \
     X(MIXTURES, "elements mixed of two volumes")                                                                       \
     X(CURVES, "muscles with a passive stress or an optimum")                                                           \

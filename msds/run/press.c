@@ -236,7 +236,8 @@ static void divide(const press *s, const screw *way, double from, double to, con
     const double length = screw_length(way, probe_lever(s->shape)) * (to - from);
     const int count = (int)fmin(PRESS_SWEEP - 1, fmax(1, ceil(length / (stride * fmin(s->shape->size, s->p->side)))));
     const int64_t flight = f->springs ? (int64_t)(from / to * (double)m->asked) : 0, left = m->asked - flight;
-    const int64_t few = f->newton ? s->iterations : PRESS_TOGETHER, even = left > count * few ? left : count * few;
+    const int64_t few = f->newton ? s->iterations : PRESS_TOGETHER;
+    const int64_t even = left > count * few ? left : count * few;
     const int64_t last = left - few * (count - 1), half = (left + 1) / 2;
     if (flight)
         m->list[m->count++] = (press_move){screw_at(way, from), flight};

@@ -93,6 +93,9 @@ int session_change(session *s, session_part part, err *e);
 /* A pose in the body, where one was given, as one in the model. */
 pose session_place(const session *s, const pose *at);
 
+/* Refuses friction with a method that has none: -1 with e filled (status 2). */
+int session_slides(const session *s, method_word method, double friction, err *e);
+
 /* The method from the next frame on. */
 void session_method(session *s, method_word method);
 
