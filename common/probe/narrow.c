@@ -64,6 +64,59 @@ static void first_way(const void *object, const void *other, ccd_vec3_t *way)
     put(way, ((const body *)object)->first);
 }
 
+/* All within a radius of a triangle. */
+typedef struct plate {
+    ccd_vec3_t corner[3];
+    double radius;
+} plate;
+
+static void far_of_plate(const void *object, const ccd_vec3_t *way, ccd_vec3_t *to)
+{
+    const plate *t = object;
+    const double length = sqrt(ccdVec3Len2(way));
+    int farthest = 0;
+    for (int i = 1; i < 3; i++)
+        if (ccdVec3Dot(way, &t->corner[i]) > ccdVec3Dot(way, &t->corner[farthest]))
+            farthest = i;
+    ccdVec3Copy(to, way);
+    ccdVec3Scale(to, length > 0 ? t->radius / length : 0);
+    ccdVec3Add(to, &t->corner[farthest]);
+}
+
+static bool meet(const probe_placed *p, const plate *t)
+{
+    static const double first[3] = {.3, .5, .8};
+    const body probe_body = {p, first};
+    ccd_t how;
+    CCD_INIT(&how);
+    how.support1 = far_of_probe;
+    how.support2 = far_of_plate;
+    how.first_dir = first_way;
+    how.max_iterations = 500;
+    return ccdGJKIntersect(&probe_body, t, &how) != 0;
+}
+
+double narrow_gap(const probe_placed *p, const double triangle[9], double most, double fine)
+{
+    plate t = {.radius = most / p->shape.reach};
+    double low = 0, high = most;
+    for (int i = 0; i < 3; i++) {
+        put(&t.corner[i], triangle + 3 * (size_t)i);
+        ccdVec3Scale(&t.corner[i], 1 / p->shape.reach);
+    }
+    if (!(most > 0) || !meet(p, &t))
+        return most;
+    while (high - low > fine) {
+        const double middle = (low + high) / 2;
+        t.radius = middle / p->shape.reach;
+        if (meet(p, &t))
+            high = middle;
+        else
+            low = middle;
+    }
+    return low;
+}
+
 bool narrow_at(const probe_placed *p, const double x[3], double radius, int starts, probe_touch *t)
 {
     static const double firsts[NARROW_STARTS][3] = {{1, 0, 0},    {0, 0, 1},     {.3, .5, .8}, {-.7, .6, .4},

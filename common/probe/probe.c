@@ -219,6 +219,11 @@ void probe_text(const probe *p, char *to, size_t size)
         snprintf(to, size, "convex:%.250s", p->file + path_folder(p->file));
 }
 
+double probe_lever(const probe *p)
+{
+    return p->reach + sqrt(p->middle[0] * p->middle[0] + p->middle[1] * p->middle[1] + p->middle[2] * p->middle[2]);
+}
+
 bool probe_is_thin(const probe *p, double side)
 {
     return 2 * p->size < .99 * side;

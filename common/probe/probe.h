@@ -94,6 +94,9 @@ probe probe_curved(double radius, double angle, double thickness, double edge);
 /* The point of it that is farthest along d (any length), both in its own frame. */
 void probe_farthest(const probe *p, const double d[3], double to[3]);
 
+/* m: no point of it is farther from its frame's origin. */
+double probe_lever(const probe *p);
+
 /* Whether it is thinner than cells of this side, m: nodes are so far apart that it may go in between them. */
 bool probe_is_thin(const probe *p, double side);
 

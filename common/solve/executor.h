@@ -18,6 +18,7 @@
     X(WARP, "elements that turn: --warp")                                                                              \
     X(TISSUE, "the method tissue")                                                                                     \
     X(CAVITIES, "cavities: --cavity")                                                                                  \
+    X(FRICTION, "friction on a probe: --friction")                                                                     \
     X(HISTORY, "history of elements, which the law needs")                                                             \
     X(MIXTURES, "elements mixed of two volumes")                                                                       \
     X(CURVES, "muscles with a passive stress or an optimum")                                                           \

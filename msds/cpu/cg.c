@@ -161,6 +161,7 @@ static void conclude(cg *g)
         contact *c = &g->pressed.c->list[i];
         c->force = g->p->options.penalty ? g->p->repulsion[c->node] * pressed_depth(&g->pressed, c, g->u)
                                          : -pressed_along(&g->left, g->s->own_node[c->node], c);
+        pressed_drag(&g->pressed, c, g->u);
         pressed_count(&g->pressed, c, &g->left, g->weight, &square, &load);
     }
     load = fmax(fmax(load, g->pull), g->p->slight);

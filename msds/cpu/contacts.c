@@ -124,7 +124,7 @@ int64_t contacts_sum(const contacts *c, double force[3])
     for (int64_t i = 0; i < c->count; i++) {
         pressed += c->list[i].force > 0;
         for (int a = 0; a < 3; a++)
-            force[a] -= c->list[i].force * c->list[i].way[a];
+            force[a] -= c->list[i].force * c->list[i].way[a] + c->list[i].drag[a];
     }
     return pressed;
 }
@@ -136,7 +136,7 @@ void contacts_twist(const contacts *c, const lanes_springs *w, const msds_proble
     for (int64_t i = 0; i < c->count; i++) {
         place_of(w, p, u, c->list[i].node, moved, x);
         for (int a = 0; a < 3; a++)
-            force[a] = -c->list[i].force * c->list[i].way[a];
+            force[a] = -c->list[i].force * c->list[i].way[a] - c->list[i].drag[a];
         probe_torque(w->probe, x, force, torque);
     }
 }

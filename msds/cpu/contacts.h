@@ -16,6 +16,9 @@ typedef struct contact {
     bool active;    /* tissue.h: it is held on its plane, */
     bool meets;     /* or comes to it now */
     double pull;    /* N: by what would pull it off; below 0: press it on */
+    double grip;    /* N/m: of the spring of friction (grips.h); 0: none; */
+    double to[3];   /* m: the displacement that it pulls to, along the plane; */
+    double drag[3]; /* N: and what it pulls with after a step */
 } contact;
 
 typedef struct contacts {

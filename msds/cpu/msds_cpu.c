@@ -8,12 +8,16 @@
 #include "msds/cpu/cg.h"
 #include "msds/cpu/exact.h"
 #include "msds/cpu/exact_making.h"
+#include "msds/cpu/grips.h"
 #include "msds/cpu/tissue.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 enum { FIELDS = 6, ROUNDS = 4 /* of an exact frame, each with the nodes that the last one pushed into the probe */ };
+
+/* With friction, rounds of a frame of conjugate gradients, and iterations of each at least. */
+enum { TURNS = 4, TURN = 3 };
 
 /* An exact frame is in equilibrium to this share of its load; a node may be missed in the probe by this share of
  * its size. */
@@ -44,6 +48,7 @@ struct msds_state {
     float *inverse;                   /* nodes: dt / inertia; of w */
     float *repulsion;                 /* nodes: of w */
     contacts contacts;
+    grips grips;
     fem fem[2];     /* of linear elements, and of warped ones */
     tissue *tissue; /* made when it is first wanted */
     double *place;  /* the model's nodes x 3, m: where exact frames stand */
@@ -97,7 +102,7 @@ static int allocate(cpu_state *s, err *e)
     for (int i = 0; i < FIELDS; i++)
         if (lanes_field_make(fields[i], o->nodes, e))
             return -1;
-    if (contacts_make(&s->contacts, o, s->p->nodes, e))
+    if (contacts_make(&s->contacts, o, s->p->nodes, e) || grips_make(&s->grips, s->p->nodes, e))
         return -1;
     return s->stiffness && s->damper && s->rest && s->inertia && s->inverse && s->repulsion && s->place ? 0 : -1;
 }
@@ -133,6 +138,7 @@ static void cpu_destroy(cpu_state *s)
         tissue_free(s->tissue);
     free(s->tissue);
     contacts_free(&s->contacts);
+    grips_free(&s->grips);
     lanes_field *fields[FIELDS] = {&s->w.place, &s->w.u, &s->w.v, &s->w.next_u, &s->w.next_v, &s->w.weight};
     for (int i = 0; i < FIELDS; i++)
         lanes_field_free(fields[i]);
@@ -288,6 +294,28 @@ static void find_contacts(cpu_state *s, const double *u, contacts_rule rule)
     s->contacts.count = 0;
     if (s->plan.touched)
         contacts_find(&s->contacts, s->loops, &s->w, s->p, u, s->threads, rule);
+    if (u || !s->plan.touched) /* exact frames slide */
+        grips_clear(&s->grips);
+    else
+        grips_take(&s->grips, &s->contacts, s->p, &s->plan.probe);
+}
+
+/* Notes forces, and places held by friction, for the next step. */
+static void hold_contacts(cpu_state *s)
+{
+    contacts_hold(&s->contacts, s->p);
+    if (s->plan.touched && (s->plan.method == MSDS_FEM || s->plan.method == MSDS_TISSUE))
+        grips_keep(&s->grips, &s->contacts, s->p, &s->w);
+    else
+        grips_clear(&s->grips);
+}
+
+/* In how many rounds so many iterations find which nodes slip. */
+static int64_t turns_of(const cpu_state *s, int64_t count)
+{
+    if (!s->grips.count)
+        return 1;
+    return count < TURNS * TURN ? count / TURN : TURNS;
 }
 
 static int step_cg(cpu_state *s, int64_t count, err *e)
@@ -303,6 +331,13 @@ static int step_cg(cpu_state *s, int64_t count, err *e)
         contacts_hold(&s->contacts, s->p);
         find_contacts(s, NULL, CONTACTS_PRESSED);
         count -= count / 2;
+    }
+    for (int64_t turns = turns_of(s, count); turns > 1; turns--) {
+        const int64_t now = count / turns;
+        cg_solve(solver, now);
+        contacts_hold(&s->contacts, s->p);
+        find_contacts(s, NULL, CONTACTS_PRESSED);
+        count -= now;
     }
     cg_solve(solver, count);
     return 0;
@@ -379,7 +414,7 @@ static int cpu_step(cpu_state *s, const msds_plan *plan, int64_t count, err *e)
         clear_field(s, &s->w.v);
     }
     s->precise = s->plan.method == MSDS_EXACT;
-    contacts_hold(&s->contacts, s->p);
+    hold_contacts(s);
     s->met = s->met || contacts_held(&s->contacts, s->p) > 0;
     return result;
 }
@@ -393,6 +428,7 @@ static int cpu_reset(cpu_state *s, err *e)
     memset(s->place, 0, 3 * (size_t)s->p->nodes * sizeof *s->place);
     memset(s->contacts.held, 0, (size_t)s->p->nodes * sizeof *s->contacts.held);
     s->contacts.count = 0;
+    grips_clear(&s->grips);
     s->precise = true;
     s->solves = 0;
     fem_clear(&s->fem[true]);
@@ -479,7 +515,7 @@ void msds_cpu_touch(msds_state *s, const msds_plan *plan)
 
 const msds_executor msds_cpu = {
     .is = {.device = "cpu",
-           .features = EXECUTOR_CONTACT | EXECUTOR_WARP | EXECUTOR_TISSUE | EXECUTOR_CAVITIES,
+           .features = EXECUTOR_CONTACT | EXECUTOR_WARP | EXECUTOR_TISSUE | EXECUTOR_CAVITIES | EXECUTOR_FRICTION,
            .unusable = cpu_unusable},
     .create = cpu_create,
     .destroy = cpu_destroy,

@@ -328,6 +328,10 @@ static double slope_of(tissue *t)
     for (int64_t i = 0; i < t->pressed.c->count; i++) {
         const contact *c = &t->pressed.c->list[i];
         const double along = pressed_along(&t->step, own_of(t, c), c);
+        double drag[3];
+        pressed_friction(&t->pressed, c, t->u, drag);
+        for (int a = 0; a < 3 && c->grip > 0; a++)
+            slope += drag[a] * (double)t->step.x[a][own_of(t, c)];
         if (c->active)
             slope -= pressed_along(&t->left, own_of(t, c), c) * along;
         else if (t->pressed.p->options.penalty)
@@ -405,6 +409,7 @@ static void conclude(tissue *t)
         c->force = t->pressed.p->options.penalty
                        ? t->pressed.p->repulsion[c->node] * pressed_depth(&t->pressed, c, t->u)
                        : held;
+        pressed_drag(&t->pressed, c, t->u);
         pressed_count(&t->pressed, c, &t->left, t->weight, &square, &load);
     }
     for (int c = 0; c < t->pressed.p->cavities; c++)

@@ -25,6 +25,7 @@ typedef struct msds_options {
     double damping;    /* s: a spring's damping over its stiffness */
     double gravity[3]; /* m/s2 */
     double repulsion;  /* contact stiffness of a node over that of its springs together */
+    double friction;   /* Coulomb's, of the FEM's and tissue's contact */
     bool penalty;      /* the FEM's contact is a penalty of that stiffness; else the displacement is prescribed */
 } msds_options;
 

@@ -118,11 +118,19 @@ static void say_cavities(const session *s)
                  s->openness.least_time[c], 100 * s->openness.now[c]);
 }
 
+static void warn_of_bone(session *s)
+{
+    if (s->stopped)
+        notes_add(&s->warnings, "a rigid volume kept the probe from its pose in %lld of %lld frames, first at %.6g s",
+                  (long long)s->stopped, (long long)s->posed, s->stopped_first);
+}
+
 void frame_report_end(session *s)
 {
     char force[200] = "";
     const peak *u = &s->moved, *f = &s->pushed;
     warn_of_misses(s);
+    warn_of_bone(s);
     inverted_warn(&s->inverted, s->posed, methods_words[s->used], &s->warnings);
     if (f->value > 0)
         snprintf(force, sizeof force, "; largest force on the probe %.4g N, from %lld node%s, at %.6g s", f->value,
@@ -148,6 +156,22 @@ static void warn_of_inside(session *s, int64_t line, const press_moves *moves)
               place, 1e3 * moves->back, moves->count);
 }
 
+/* Said once; at the end, how often. */
+static void note_stop(session *s, const pose *at, int64_t line, const press_moves *moves)
+{
+    char place[300] = "";
+    double square = 0;
+    if (s->stopped++)
+        return;
+    s->stopped_first = s->time;
+    for (int a = 0; a < 3; a++)
+        square += pow(press_end(moves)->position[a] - at->position[a], 2);
+    if (line)
+        snprintf(place, sizeof place, "%s:%lld: ", s->source, (long long)line);
+    notes_add(&s->warnings, "%sthe probe would enter a rigid volume, and stops %.3g mm before its pose", place,
+              1e3 * sqrt(square));
+}
+
 void frame_report_pose(session *s, const pose *at, int64_t line, const press_moves *moves, bool first)
 {
     const probe_placed placed = probe_place(&s->probe, at);
@@ -160,6 +184,8 @@ void frame_report_pose(session *s, const pose *at, int64_t line, const press_mov
             2e3 * s->probe.size, 1e3 * s->problem.side);
     if (moves->inside)
         warn_of_inside(s, line, moves);
+    if (moves->stopped)
+        note_stop(s, at, line, moves);
     if (s->warnings.count)
         progress_clear(&s->progress);
     tool_warn(s->t, &s->warnings);

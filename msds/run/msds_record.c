@@ -74,7 +74,7 @@ void msds_record_add(record *r, session *s, const frame_input *from, bool rested
                       .time = from->time,
                       .has_pose = from->has_pose,
                       .at = from->at,
-                      .steps = press_sum(&s->moves),
+                      .steps = s->moves.asked,
                       .of = -1};
     snprintf(f.path, sizeof f.path, "%s", rested ? rest : methods_words[s->used]);
     record_add(r, &f, &s->warnings);

@@ -40,6 +40,8 @@ static const opt option_list[] = {
      "fem: prescribed displacements, or penalty forces [default prescribed]"},
     {OPT_NUMERICS, 0, "repulsion", "X", OPT_NUMBER, TO(repulsion), 1e-6, 1e6, NULL, OPT_OUTPUT,
      "contact stiffness relative to springs [default 1]"},
+    {OPT_ACTION, 0, "friction", "MU", OPT_NUMBER, TO(friction), 0, 10, NULL, OPT_OUTPUT,
+     "fem, warp, tissue: Coulomb friction with the probe [default 0]"},
     {OPT_ACTION, 'g', "gravity", "X,Y,Z", OPT_NUMBERS, TO(gravity), 3, 3, NULL, 0, "gravity [m/s2; default none]"},
     {OPT_ACTION, 0, "cavity", "NAME=PRESSURE,...", OPT_TEXT, TO(cavity), 0, 0, "@volume.name=", 0,
      "volumes that are hollow, such as vein=10mmHg [Pa, kPa, mmHg]"},

@@ -11,7 +11,7 @@ struct options {
     const char *body, *control, *record, *replay;
     const char *probe, *unit, *poses, *transform, *scale;
     int64_t iterations;
-    double dt, damping, repulsion, rate, skin_stiffness, skin_anchors, skin_tension;
+    double dt, damping, repulsion, friction, rate, skin_stiffness, skin_anchors, skin_tension;
     const char *skin, *cavity, *outflow, *wall;
     opt_numbers gravity;
 };

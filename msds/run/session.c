@@ -63,7 +63,8 @@ static void say_springs(session *s)
 
 static int read_options(const struct options *o, msds_options *to, err *e)
 {
-    *to = (msds_options){.damping = o->damping, .repulsion = o->repulsion, .penalty = o->contact};
+    *to = (msds_options){
+        .damping = o->damping, .repulsion = o->repulsion, .friction = o->friction, .penalty = o->contact};
     for (int a = 0; a < 3 && o->gravity.count; a++)
         to->gravity[a] = o->gravity.value[a];
     return read_scale(o->scale, &to->scale, e);
@@ -141,8 +142,8 @@ static int take_frames(session *s, err *e)
 
 int session_start(session *s, err *e)
 {
-    if (take_frames(s, e) || inverted_make(&s->inverted, &s->problem, s->threads, e) ||
-        openness_make(&s->openness, &s->problem, e))
+    if (take_frames(s, e) || press_bones(&s->press, &s->m, e) ||
+        inverted_make(&s->inverted, &s->problem, s->threads, e) || openness_make(&s->openness, &s->problem, e))
         return -1;
     s->state = s->device->create(&s->problem, s->threads, e);
     if (!s->state)
@@ -203,14 +204,28 @@ static int make_skin(session *s, err *e)
     return 0;
 }
 
+int session_slides(const session *s, method_word method, double friction, err *e)
+{
+    const method_word is = methods_with(method, s->o->exact, s->o->warp);
+    if (!(friction > 0) || methods_solver(is) == MSDS_FEM || methods_solver(is) == MSDS_TISSUE)
+        return 0;
+    return err_usage(e,
+                     "--friction %g with the method %s, by which tissue slides on the probe; expected fem, warp or "
+                     "tissue, or --friction 0",
+                     friction, methods_words[is]);
+}
+
 static int choose_device(session *s, err *e)
 {
     static const char *const names[] = {"auto", "cuda", "cpu"};
     const struct options *o = s->o;
     const method_word method = (method_word)o->method;
+    if (session_slides(s, method, o->friction, e))
+        return -1;
     const uint32_t later = o->warp && method == METHOD_MSDS ? EXECUTOR_WARP : 0; /* where FEM begins */
-    const executor_need need = {.features = methods_features(methods_with(method, o->exact, o->warp)) |
-                                            (s->cavities.count ? EXECUTOR_CAVITIES : 0) | (o->device ? 0 : later)};
+    const uint32_t more = (o->friction > 0 ? EXECUTOR_FRICTION : 0) | (s->cavities.count ? EXECUTOR_CAVITIES : 0);
+    const executor_need need = {.features = methods_features(methods_with(method, o->exact, o->warp)) | more |
+                                            (o->device ? 0 : later)};
     char device[300];
     s->device = msds_executor_of(executor_choose(msds_executors, names[o->device], &need, device, sizeof device, e));
     int threads = tool_threads(s->t, e);

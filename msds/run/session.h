@@ -74,7 +74,9 @@ typedef struct session {
     bool pressed; /* some node, in some frame */
     bool dented;  /* the skin */
     bool inside_told;
-    bool diverged; /* in the last frame */
+    int64_t stopped;      /* frames in which bone kept the probe from its pose */
+    double stopped_first; /* s: the first of them */
+    bool diverged;        /* in the last frame */
     notes warnings;
     char *text[SESSION_TEXTS]; /* of settings that changed, which the options point to; owned */
 } session;
@@ -95,6 +97,9 @@ int session_change(session *s, session_part part, err *e);
 
 /* A pose in the body, where one was given, as one in the model. */
 pose session_place(const session *s, const pose *at);
+
+/* Refuses friction with a method that has none: -1 with e filled (status 2). */
+int session_slides(const session *s, method_word method, double friction, err *e);
 
 /* The method from the next frame on. */
 void session_method(session *s, method_word method);

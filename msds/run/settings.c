@@ -12,11 +12,11 @@ static const struct {
     const char *key;
     session_part part; /* that has to take it over */
 } settings[] = {
-    {"iterations", SESSION_PACE},   {"rate", SESSION_PACE},           {"dt", SESSION_STEP},
-    {"mass", SESSION_STEP},         {"damping", SESSION_SPRINGS},     {"spring-scale", SESSION_SPRINGS},
-    {"repulsion", SESSION_SPRINGS}, {"contact", SESSION_FORCES},      {"gravity", SESSION_FORCES},
-    {"probe", SESSION_PROBE},       {"skin-stiffness", SESSION_SKIN}, {"skin-anchors", SESSION_SKIN},
-    {"skin-tension", SESSION_SKIN}, {"cavity", SESSION_CAVITIES},
+    {"iterations", SESSION_PACE},   {"rate", SESSION_PACE},         {"dt", SESSION_STEP},
+    {"mass", SESSION_STEP},         {"damping", SESSION_SPRINGS},   {"spring-scale", SESSION_SPRINGS},
+    {"repulsion", SESSION_SPRINGS}, {"contact", SESSION_FORCES},    {"friction", SESSION_FORCES},
+    {"gravity", SESSION_FORCES},    {"probe", SESSION_PROBE},       {"skin-stiffness", SESSION_SKIN},
+    {"skin-anchors", SESSION_SKIN}, {"skin-tension", SESSION_SKIN}, {"cavity", SESSION_CAVITIES},
 };
 
 enum { SETTINGS = sizeof settings / sizeof *settings };
@@ -55,6 +55,17 @@ static int parse(const session *s, const keyfile *k, int i, struct options *to, 
     return 0;
 }
 
+/* Of friction: what the method and the device can do. */
+static int check_friction(const session *s, const keyfile *k, method_word method, double friction, err *e)
+{
+    err wrong = {0};
+    if (session_slides(s, method, friction, &wrong))
+        return keyfile_error(k, e, "%s", wrong.text);
+    if (friction > 0 && !(s->device->is.features & EXECUTOR_FRICTION))
+        return keyfile_error(k, e, "friction %g is not done on a card; expected -d cpu", friction);
+    return 0;
+}
+
 static bool has_file(const char *shape)
 {
     return shape && !strncmp(shape, "convex:", 7);
@@ -69,7 +80,7 @@ static int check(const session *s, const keyfile *k, int i, const struct options
         return keyfile_error(k, e, "set %s, but there is no cavity; expected --cavity", settings[i].key);
     if (settings[i].part == SESSION_SKIN && !s->skin.vertices)
         return keyfile_error(k, e, "set %s, but there is no skin; expected --skin", settings[i].key);
-    return 0;
+    return check_friction(s, k, s->method, to->friction, e);
 }
 
 /* Makes the options those of `to`; where that fails, as they were. */
@@ -119,6 +130,8 @@ static int take_method(session *s, const keyfile *k, err *e)
         return keyfile_error(k, e, "method %s with --cavity; expected method tissue", methods_words[to]);
     if (methods_features(to) & ~s->device->is.features)
         return keyfile_error(k, e, "method %s is not done on a card; expected -d cpu", methods_words[to]);
+    if (check_friction(s, k, (method_word)method, s->o->friction, e))
+        return -1;
     session_method(s, (method_word)method);
     tool_detail(s->t, "line %lld: the method is %s from here on", (long long)k->line, k->word[1]);
     return 0;

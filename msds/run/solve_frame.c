@@ -17,7 +17,7 @@ static int put_numbers(const session *s, frame *f, const char *name, const doubl
 static int put_probe(const session *s, frame *f, const frame_input *from, err *e)
 {
     double row[7];
-    pose_to_row(&from->at, row);
+    pose_to_row(press_end(&s->moves), row);
     if (from->has_pose && put_numbers(s, f, "probe.pose", row, 7, e))
         return -1;
     return put_numbers(s, f, "probe.force", s->reading.force, 3, e) ||
@@ -49,6 +49,13 @@ out:
     return result;
 }
 
+/* What a move of a sweep that is not the last is made by: no exact solution of it is wanted. */
+static msds_method method_along(const press_moves *moves, int i, msds_method method)
+{
+    const bool last = i + 1 == moves->count;
+    return moves->swept && !last && method == MSDS_EXACT ? MSDS_FEM : method;
+}
+
 /* All moves of a frame but the last; fills the plan with that, and returns its count of steps, or -1 with e filled. The
  * skin, if there is one to go with it, makes the last one too. */
 static int64_t make_moves(session *s, msds_state *state, const press_moves *moves, msds_plan *plan, bool with_skin,
@@ -56,7 +63,9 @@ static int64_t make_moves(session *s, msds_state *state, const press_moves *move
 {
     int64_t count = 0;
     plan->elapsed /= moves->count;
+    const msds_method method = plan->method;
     for (int i = 0; i < moves->count; i++) {
+        plan->method = method_along(moves, i, method);
         plan->probe = probe_place(&s->probe, &moves->list[i].at);
         if (with_skin && s->skin.vertices &&
             skin_step(&s->skin, plan->touched ? &plan->probe : NULL, moves->list[i].iterations, e))
@@ -126,7 +135,11 @@ static void begin(session *s, const frame_input *from)
 
 int solve_frame_solve(session *s, const frame_input *from, err *e)
 {
-    const press_frame f = {from->time, from->at, from->method == METHOD_MSDS, from->iterations};
+    const press_frame f = {.time = from->time,
+                           .at = from->at,
+                           .springs = from->method == METHOD_MSDS,
+                           .newton = from->method == METHOD_TISSUE,
+                           .iterations = from->iterations};
     const bool first = !s->press.any;
     s->diverged = false;
     begin(s, from);
@@ -142,7 +155,7 @@ int solve_frame_solve(session *s, const frame_input *from, err *e)
 
 int solve_frame_rest(session *s, const frame_input *from, err *e)
 {
-    const press_frame f = {.time = from->time, .iterations = 0};
+    const press_frame f = {.time = from->time, .at = from->at, .iterations = 0};
     begin(s, from);
     press_wait(&s->press, &f, &s->moves);
     press_reset(&s->press);

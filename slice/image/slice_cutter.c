@@ -139,6 +139,14 @@ int64_t slice_cutter_list(const slice_cutter *c, const int32_t **list)
     return c->count;
 }
 
+const slice_piece *slice_cutter_piece(const slice_cutter *c, int64_t i, slice_piece *room)
+{
+    if (c->s.method != SLICE_PAPER)
+        return &((const slice_piece *)c->piece)[i];
+    c->s.lanes->cut(&c->tets, c->s.cells, c->list + i, 1, c->s.size.rows, room);
+    return room;
+}
+
 slice_piece *slice_cutter_pieces(const slice_cutter *c, int64_t *count, err *e)
 {
     slice_piece *p = mem_array(c->count, sizeof *p, "pieces of an image", e);

@@ -52,6 +52,9 @@ int slice_cutter_image(slice_cutter *c, const slice_plane *at, const double *dis
 /* Of the last image: the tetrahedra that may meet it, ascending. */
 int64_t slice_cutter_list(const slice_cutter *c, const int32_t **list);
 
+/* Piece i of that list: how the plane cuts the tetrahedron, its corners above all. It is the cutter's, or *room. */
+const slice_piece *slice_cutter_piece(const slice_cutter *c, int64_t i, slice_piece *room);
+
 /* The pieces of the last image's list, whatever the method: how the plane cuts each tetrahedron that may meet the
  * image. The caller frees them; NULL with e filled. */
 slice_piece *slice_cutter_pieces(const slice_cutter *c, int64_t *count, err *e);

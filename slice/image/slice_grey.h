@@ -12,6 +12,8 @@
 
 #include "slice/image/slice_view.h"
 
+#define SLICE_RANGE 60 /* dB: shown, and recorded, where nothing else is said */
+
 typedef struct slice_knobs {
     double gain;            /* dB */
     const double *tgc;      /* dB: at equal steps from the face to the depth, linear between them */

@@ -22,6 +22,8 @@ static const opt option_list[] = {
     {OPT_ACTION, 0, "width", "W", OPT_LENGTHS, TO(width), 0, 1, NULL, 0, "width [length; default the probe's]"},
     {OPT_ACTION, 0, "thickness", "T[,N]", OPT_TEXT, TO(thickness), 0, 0, NULL, 0,
      "thickness of the beam: the mean of N slices, 5 if not given [length; default one slice]"},
+    {OPT_ACTION, 0, "coupling", "GAP", OPT_LENGTHS, TO(coupling), 0, 1, NULL, 0,
+     "dark where the face is farther than GAP from tissue [length; default off]"},
     {OPT_ACTION, 0, "gain", "DB", OPT_NUMBER, TO(gain), -200, 200, NULL, 0, "gain [dB; default 0]"},
     {OPT_ACTION, 0, "tgc", "DB,...", OPT_NUMBERS, TO(tgc), 1, 6, NULL, 0,
      "time-gain compensation: gains from face to depth [dB]"},
@@ -102,6 +104,8 @@ int slice_options_check(const slice_options *o, err *e)
         return -1;
     if (o->rigid && !o->poses && !o->replay)
         return err_usage(e, "--rigid without --poses; expected where the probe is");
+    if (o->rigid && o->coupling.count)
+        return err_usage(e, "--coupling with --rigid: there is no tissue that the face could touch");
     if (o->rigid && o->cut)
         return err_usage(e, "--cut with --rigid: there are no tetrahedra to cut");
     if (o->body && !o->poses && !o->replay)
@@ -121,6 +125,9 @@ int slice_options_values(const slice_options *o, err *e)
         return err_usage(e, "--depth: %g m; expected 1 um to 10 m", slice_options_metres(&o->depth, 1));
     if (!is_side(slice_options_metres(&o->width, 1)))
         return err_usage(e, "--width: %g m; expected 1 um to 10 m", slice_options_metres(&o->width, 1));
+    const double gap = slice_options_metres(&o->coupling, 0);
+    if (gap != 0 && !is_side(gap))
+        return err_usage(e, "--coupling: %g m; expected 1 um to 10 m, or 0: every beam is coupled", gap);
     for (int i = 0; i < o->range.count; i++)
         if (!(o->range.value[i] >= 1 && o->range.value[i] <= 200))
             return err_usage(e, "--dynamic-range %g; expected 1 to 200 dB", o->range.value[i]);

@@ -9,7 +9,7 @@ typedef struct slice_options {
     bool rigid, live, force;
     int method;
     const char *poses, *transform, *body, *size, *probe, *labels, *cut, *thickness, *control, *record, *replay;
-    opt_lengths depth, width;
+    opt_lengths depth, width, coupling;
     opt_numbers tgc, range, window;
     double gain;
     double rate; /* Hz; NAN: not given */

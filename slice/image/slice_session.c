@@ -142,13 +142,25 @@ static int make_view(slice_session *s, err *e)
     return 0;
 }
 
+/* R of slice_grey.h. */
+static double recorded_range(const slice_options *o)
+{
+    return o->range.count > 1 ? o->range.value[1] : SLICE_RANGE;
+}
+
 static int make_grey(const slice_session *s, const slice_view *view, slice_grey *to, err *e)
 {
     const slice_options *o = &s->o;
-    slice_knobs k = {o->gain, o->tgc.value, o->tgc.count, 60, 60};
+    slice_knobs k = {o->gain, o->tgc.value, o->tgc.count, SLICE_RANGE, recorded_range(o)};
     k.shown = o->range.count ? o->range.value[0] : k.shown;
-    k.recorded = o->range.count > 1 ? o->range.value[1] : k.recorded;
     return slice_grey_make(to, view, &k, e);
+}
+
+static int make_coupling(const slice_session *s, const slice_view *view, slice_coupling *to, err *e)
+{
+    const double gap = slice_options_metres(&s->o.coupling, 0);
+    *to = (slice_coupling){0};
+    return gap > 0 ? slice_coupling_make(to, view, gap, recorded_range(&s->o), e) : 0;
 }
 
 static int take_labels(slice_session *s, volume *labels, err *e)
@@ -227,7 +239,8 @@ static int read_body(slice_session *s, err *e)
 /* What is drawn with, once the volume and the model are there. */
 static int make_tools(slice_session *s, err *e)
 {
-    if (make_grey(s, &s->view, &s->grey, e) || make_overlay(s, e) || make_images(s, e))
+    if (make_grey(s, &s->view, &s->grey, e) || make_coupling(s, &s->view, &s->coupling, e) || make_overlay(s, e) ||
+        make_images(s, e))
         return -1;
     s->cutter = make_cutter(s, &s->view, e);
     return s->cutter ? 0 : -1;
@@ -271,6 +284,7 @@ void slice_session_close(slice_session *s, err *e)
     slice_writer_close(&s->writer, e);
     slice_cutter_free(s->cutter);
     slice_overlay_free(&s->overlay);
+    slice_coupling_free(&s->coupling);
     slice_grey_free(&s->grey);
     slice_view_free(&s->view);
     slice_mesh_free(&s->mesh);
@@ -288,9 +302,17 @@ void slice_session_close(slice_session *s, err *e)
 int slice_session_set_grey(slice_session *s, err *e)
 {
     slice_grey grey;
+    slice_coupling coupling = {0};
     if (make_grey(s, &s->view, &grey, e))
         return -1;
+    if (make_coupling(s, &s->view, &coupling, e)) {
+        slice_coupling_free(&coupling);
+        slice_grey_free(&grey);
+        return -1;
+    }
+    slice_coupling_free(&s->coupling);
     slice_grey_free(&s->grey);
+    s->coupling = coupling;
     s->grey = grey;
     return 0;
 }
@@ -313,17 +335,21 @@ int slice_session_set_view(slice_session *s, err *e)
 {
     slice_view view = {0};
     slice_grey grey = {0};
+    slice_coupling coupling = {0};
     slice_cutter *cutter = NULL;
-    if (!make_new_view(s, &view, e) && !make_grey(s, &view, &grey, e))
+    if (!make_new_view(s, &view, e) && !make_grey(s, &view, &grey, e) && !make_coupling(s, &view, &coupling, e))
         cutter = make_cutter(s, &view, e);
     if (!cutter) {
+        slice_coupling_free(&coupling);
         slice_grey_free(&grey);
         slice_view_free(&view);
         return -1;
     }
     slice_cutter_free(s->cutter);
+    slice_coupling_free(&s->coupling);
     slice_grey_free(&s->grey);
     slice_view_free(&s->view);
+    s->coupling = coupling;
     s->cutter = cutter;
     s->grey = grey;
     s->view = view;
@@ -343,6 +369,18 @@ int slice_session_set_thickness(slice_session *s, err *e)
 
 /* ---- images */
 
+/* One slice, in which beams that enter no tissue are dark. */
+static int draw_slice(slice_session *s, const slice_plane *at, const double *displacement, uint8_t *to, err *e)
+{
+    if (slice_cutter_image(s->cutter, at, displacement, to, NULL, e))
+        return -1;
+    if (!s->coupling.beams)
+        return 0;
+    slice_coupling_find(&s->coupling, s->cutter);
+    slice_coupling_darken(&s->coupling, to);
+    return 0;
+}
+
 /* The mean of the slices; labels are those of the middle one. */
 static int draw(slice_session *s, const pose *posed, const double *displacement, slice_plane *at, err *e)
 {
@@ -351,8 +389,10 @@ static int draw(slice_session *s, const pose *posed, const double *displacement,
     *at = slice_view_plane(&s->view, posed, 0);
     if (s->labels)
         slice_cutter_also(s->cutter, slice_overlay_take, &s->overlay);
-    if (slice_cutter_image(s->cutter, at, displacement, s->image, NULL, e))
+    if (draw_slice(s, at, displacement, s->image, e))
         return -1;
+    if (s->labels)
+        slice_coupling_hide(&s->coupling, s->overlay.seen);
     if (n == 1)
         return 0;
     slice_cutter_also(s->cutter, NULL, NULL);
@@ -361,7 +401,7 @@ static int draw(slice_session *s, const pose *posed, const double *displacement,
         const double off = s->thick * ((i + .5) / n - .5);
         const slice_plane beside = slice_view_plane(&s->view, posed, off);
         const bool middle = 2 * i + 1 == n;
-        if (!middle && slice_cutter_image(s->cutter, &beside, displacement, s->one, NULL, e))
+        if (!middle && draw_slice(s, &beside, displacement, s->one, e))
             return -1;
         const uint8_t *from = middle ? s->image : s->one;
         for (int64_t k = 0; k < count; k++)

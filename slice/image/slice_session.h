@@ -6,6 +6,7 @@
 
 #include "cli/tool.h"
 #include "model/source.h"
+#include "slice/image/slice_coupling.h"
 #include "slice/image/slice_cutter.h"
 #include "slice/image/slice_grey.h"
 #include "slice/image/slice_options.h"
@@ -32,6 +33,7 @@ typedef struct slice_session {
     slice_view view;
     slice_cutter *cutter;
     slice_grey grey;
+    slice_coupling coupling;
     slice_overlay overlay;
     slice_writer writer;
     double thick; /* m */
@@ -49,8 +51,8 @@ int slice_session_open(slice_session *s, const slice_options *o, const tool *t, 
 /* Ends the output, whole only where e is empty. */
 void slice_session_close(slice_session *s, err *e);
 
-/* The array, depth or width of s->o changed; or gains; or the thickness. -1 with e filled, and the session draws as it
- * did. The size of the image stays. */
+/* The array, depth or width of s->o changed; or gains and the coupling; or the thickness. -1 with e filled, and the
+ * session draws as it did. The size of the image stays. */
 int slice_session_set_view(slice_session *s, err *e);
 int slice_session_set_grey(slice_session *s, err *e);
 int slice_session_set_thickness(slice_session *s, err *e);

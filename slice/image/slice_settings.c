@@ -47,6 +47,13 @@ static int take_width(slice_session *s, const char *key, const char *value, err 
     return strcmp(value, "0") != 0 ? take_option(s, key, value, e) : 0;
 }
 
+static int take_coupling(slice_session *s, const char *key, const char *value, err *e)
+{
+    if (s->o.rigid)
+        return err_usage(e, "--%s %.60s with --rigid: there is no tissue that the face could touch", key, value);
+    return take_option(s, key, value, e);
+}
+
 static int take_switch(const char *key, const char *value, bool *to, err *e)
 {
     *to = !strcmp(value, "on");
@@ -123,6 +130,11 @@ static void put_thickness(const slice_session *s, out *to)
     out_text(to, s->o.thickness ? s->o.thickness : "0");
 }
 
+static void put_coupling(const slice_session *s, out *to)
+{
+    put_number(slice_options_metres(&s->o.coupling, 0), to);
+}
+
 static void put_probe(const slice_session *s, out *to)
 {
     out_text(to, s->probe);
@@ -150,6 +162,7 @@ static const setting settings[] = {
     {"depth", take_option, slice_session_set_view, put_depth},
     {"width", take_width, slice_session_set_view, put_width},
     {"thickness", take_thickness, slice_session_set_thickness, put_thickness},
+    {"coupling", take_coupling, slice_session_set_grey, put_coupling},
     {"gain", take_option, slice_session_set_grey, put_gain},
     {"tgc", take_option, slice_session_set_grey, put_tgc},
     {"dynamic-range", take_option, slice_session_set_grey, put_range},
@@ -217,7 +230,9 @@ void slice_settings_record(const slice_session *s, record *r)
     for (int i = 0; i < SETTINGS; i++) {
         err ignored = {0};
         size_t size;
-        out *text = settings[i].take == take_labels && !s->o.labels ? NULL : out_memory(&ignored);
+        const bool none =
+            (settings[i].take == take_labels && !s->o.labels) || (settings[i].take == take_coupling && s->o.rigid);
+        out *text = none ? NULL : out_memory(&ignored);
         if (!text)
             continue;
         settings[i].text(s, text);

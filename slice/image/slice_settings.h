@@ -1,5 +1,5 @@
 /* Lines `set KEY VALUE`, which change what the images of a live run look like: gain, tgc, dynamic-range, depth, width,
- * probe and thickness, whose values are those of the options; labels and freeze, on or off. Owns nothing.
+ * probe, thickness and coupling, whose values are those of the options; labels and freeze, on or off. Owns nothing.
  */
 #ifndef SINEW_SLICE_SETTINGS_H
 #define SINEW_SLICE_SETTINGS_H

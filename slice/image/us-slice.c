@@ -132,8 +132,9 @@ static int run_tool(int argc, char **argv)
     if (!j.s.lit && j.s.images)
         notes_add(&j.s.warnings,
                   "every image (of %lld) is black; expected poses in metres, in the volume's frame%s, that look "
-                  "into it",
-                  (long long)j.s.images, o.rigid ? "" : " (which is the model's too)");
+                  "into it%s",
+                  (long long)j.s.images, o.rigid ? "" : " (which is the model's too)",
+                  j.s.coupling.beams ? ", with the face on tissue (--coupling)" : "");
 out:
     tool_warn(&t, &j.s.warnings);
     slice_session_close(&j.s, &e);

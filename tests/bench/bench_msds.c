@@ -6,7 +6,7 @@
  * `bench_msds [THREADS [ROUNDS]]`.
  */
 // needs: tests/bench/bench.c msds/mesh/mesh_tets.c msds/problem/problem.c msds/problem/springs.c msds/problem/sell.c
-// needs: msds/cpu/lanes.c msds/cpu/lanes_loops.c msds/cpu/contacts.c
+// needs: msds/cpu/lanes.c msds/cpu/lanes_loops.c msds/cpu/contacts.c msds/cpu/grips.c
 // needs: msds/problem/stiffness.c msds/cpu/dissect.c msds/cpu/factor.c msds/cpu/exact.c msds/cpu/mixing.c msds/cpu/cg.c
 // needs: msds/cpu/compliance.c msds/cpu/mprgp.c
 // needs: msds/cpu/exact_making.c msds/cpu/msds_cpu.c msds/run/msds_executors.c msds/problem/largest.c

@@ -58,11 +58,11 @@ printf '%s\n' 'set gain 12' 'set tgc 0,6,-3' 'set dynamic-range 50,60' 'set dept
     'set probe curved:1cm,60,2mm' 'set width 0' 'set labels off' >&4
 check "controls are taken" until_seen 1 a.rec '^set labels off'
 printf '%s\n' 'set gain loud' 'set gain 500' 'set tgc 1,2,3,4,5,6,7' 'set depth 20m' 'set depth -1' 'set probe sphere:1cm' 'set thickness 0,0' \
-    'set probe convex:v.nrrd' 'set size 10x10' 'set freeze maybe' 'set volume 3' 'method fem' 'now contract x 1' 'set gain' >&4
+    'set probe convex:v.nrrd' 'set size 10x10' 'set freeze maybe' 'set coupling 1mm' 'set volume 3' 'method fem' 'now contract x 1' 'set gain' >&4
 echo 'set thickness 0' >&4
 check "and those after wrong ones" until_seen 1 a.rec '^set thickness 0$'
 check "with images after them" more a.rec
-is "$(grep -Ec '^set (gain (loud|500)|size|volume|freeze m)|^method|^now' a.rec)" 0 "what is wrong is not recorded"
+is "$(grep -Ec '^set (gain (loud|500)|size|volume|coupling|freeze m)|^method|^now' a.rec)" 0 "what is wrong is not recorded"
 echo 'set freeze on' >&4
 until_seen 1 a.rec '^set freeze on'
 echo '.2 .0055 .006 0 0 0 0 1' >&3
@@ -77,7 +77,7 @@ ends "SIGINT is a normal end" "$run"
 exec 3>&- 4>&-
 is "$(tail -n 1 a.rec)" end "the record has its end"
 is "$(grep -c 'the line is skipped' said)" "$(grep 'the line is skipped' said | sed 's/.*[0-9]: //' | sort -u | wc -l | tr -d ' ')" "errors are told once a kind"
-is "$(grep -c 'us-slice: live: .* 5 poses, .* 22 lines skipped; writers went away: 1$' said)" 1 "and counted: $(grep 'live:' said)"
+is "$(grep -c 'us-slice: live: .* 5 poses, .* 23 lines skipped; writers went away: 1$' said)" 1 "and counted: $(grep 'live:' said)"
 is "$(grep -c '^frame' a.rec)" "$(grep -ac '^# us-slice:' a.ppm)" "a line for each image"
 
 # shellcheck disable=SC2317
@@ -129,7 +129,7 @@ msds-run -q --method fem --probe linear:6mm,4mm --poses press.tum --text <mesh.s
 line=$(grep -n '^frame 8 ' result.sinew | cut -d : -f 1)
 mkfifo stream
 # shellcheck disable=SC2086
-us-slice --live --record m.rec --rate 100 $VIEW -o 'm_%03d.png' v.nrrd <stream >out 2>said &
+us-slice --live --record m.rec --rate 100 --coupling .3mm $VIEW -o 'm_%03d.png' v.nrrd <stream >out 2>said &
 run=$!
 exec 5<>stream
 head -n "$line" result.sinew >&5
@@ -147,6 +147,7 @@ for file in m_*.png; do
     cmp -s "$file" "again/$file" && same=$((same + 1))
 done
 is "$same" "$(grep -c '^frame' m.rec)" "makes each of its images"
+is "$(grep -c '^set coupling 0.0003' m.rec)" 1 "with the coupling that the record has"
 
 # With poses of its own: at rest until the first frame is there; the last controls of one FIFO for both.
 # shellcheck disable=SC2086

@@ -4,7 +4,7 @@
 // needs: slice/image/slice_settings.c slice/image/slice_session.c slice/image/slice_options.c slice/image/slice_view.c
 // needs: slice/image/slice_grey.c slice/image/slice_cutter.c slice/image/slice_paper.c slice/image/slice_lanes.c
 // needs: slice/image/slice_lanes_loops.c slice/image/slice_cells.c slice/image/slice_mesh.c slice/image/slice_cut.c
-// needs: slice/image/slice_overlay.c slice/image/slice_write.c slice/image/slice_files.c
+// needs: slice/image/slice_overlay.c slice/image/slice_coupling.c slice/image/slice_write.c slice/image/slice_files.c
 #include "base/mem.h"
 #include "slice/image/slice_settings.h"
 

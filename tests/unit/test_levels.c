@@ -3,7 +3,7 @@
  * lies askew, on a mesh without any order, with nodes held fast inside; and the same bytes for any number of threads.
  */
 // needs: msds/mesh/mesh_tets.c msds/problem/problem.c msds/problem/springs.c msds/problem/sell.c msds/cpu/lanes.c
-// needs: msds/cpu/lanes_loops.c msds/cpu/contacts.c
+// needs: msds/cpu/lanes_loops.c msds/cpu/contacts.c msds/cpu/grips.c
 // needs: msds/problem/stiffness.c msds/cpu/cg.c msds/cuda/levels.c msds/cuda/parts.c
 #include "msds_block.h"
 
