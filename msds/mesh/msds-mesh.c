@@ -322,9 +322,13 @@ static int make_cells(const struct options *o, graded *g, const mesh_box *b, err
     return o->mask ? mesh_border_fit(&g->mesh, b, &g->cells, &g->mask, &g->moved, e) : 0;
 }
 
-static void note_left(const mesh_left *left, notes *warnings)
+/* Crumbs at the border are not worth a word. */
+static const double crumbs = .01; /* of the mesh */
+
+static void note_left(const graded *g, notes *warnings)
 {
-    if (left->tets)
+    const mesh_left *left = &g->moved.left;
+    if ((double)left->tets > crumbs * (double)g->mesh.tets)
         notes_add(warnings, "left out: %lld tetrahedra of tissue, in %lld part%s that no face joins to the rest",
                   (long long)left->tets, (long long)left->parts, left->parts == 1 ? "" : "s");
 }
@@ -437,7 +441,7 @@ static int from_cells(const struct options *o, graded *g, mesh_box *b, model *m,
                  mesh_label(m, of, o->labels, &without, warnings, e);
     }
     volume_free(&labels);
-    note_left(&g->moved.left, warnings);
+    note_left(g, warnings);
     const mesh_made made = {&g->mesh, b, &g->cells};
     return status || mesh_fix_made(m, o->fix ? o->fix : opposite, &made, e) ? -1 : 0;
 }
