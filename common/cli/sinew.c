@@ -27,7 +27,7 @@ static const struct {
     {MODELS, "bind", "bind", "surfaces to elements, to move with them"},
     {MODELS, "materials", "sinew-materials", "laws of tissue, their keys, and materials by name"},
     {SIMULATION, "tled-run", "tled-run", "total Lagrangian explicit dynamics"},
-    {MODELS, "msds-mesh", "msds-mesh", "regular meshes of tetrahedra"},
+    {MODELS, "msds-mesh", "msds-mesh", "meshes of tetrahedra"},
     {SIMULATION, "msds-run", "msds-run", "press a probe on tetrahedra, by springs or finite elements"},
     {ULTRASOUND, "us-import", "us-import", "a volume from DICOM, sweeps, MetaImage"},
     {ULTRASOUND, "us-segment", "us-segment", "a part of a volume as a named label"},

@@ -20,6 +20,9 @@ static const double short_of = 1.1;
  * the rim of the mesh may have hardly any. */
 static const double shift = 1e-5;
 
+/* Cells are of another size if their longest edges are less than this of others': they are halved, or as large. */
+static const double smaller = .75;
+
 /* ---- places */
 
 static double dot(const double a[3], const double b[3])
@@ -42,15 +45,25 @@ static bool square_corner(const msds_problem *p, int64_t t, int c, double edge[3
     return true;
 }
 
-/* The edges of a cell: those of the first square corner, or a cube of the mean size. */
+static double longest_of(const double edge[3][3])
+{
+    return sqrt(fmax(dot(edge[0], edge[0]), fmax(dot(edge[1], edge[1]), dot(edge[2], edge[2]))));
+}
+
+/* The edges of a smallest cell, where cells are graded: those of the first of the smallest square corners, or a cube of
+ * the mean size. A lattice of larger cells would leave to smoothing what smaller ones need. */
 static void find_cell(const msds_problem *p, double edge[3][3])
 {
-    for (int64_t t = 0; t < p->elements && t < 1000; t++)
-        for (int c = 0; c < 4; c++)
-            if (square_corner(p, t, c, edge))
-                return;
+    double least = (double)INFINITY, here[3][3];
     for (int i = 0; i < 9; i++)
         edge[i / 3][i % 3] = i % 4 ? 0 : p->side;
+    for (int64_t t = 0; t < p->elements; t++)
+        for (int c = 0; c < 4; c++) {
+            if (!square_corner(p, t, c, here) || !(longest_of(here) < smaller * least))
+                continue;
+            least = longest_of(here);
+            memcpy(edge, here, sizeof here);
+        }
 }
 
 /* Level 0: places in cells of the mesh, from 0 up. */

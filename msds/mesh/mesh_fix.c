@@ -99,10 +99,11 @@ static int find_word(const char *word)
     return -1;
 }
 
-int mesh_fix(model *m, const char *list, const int32_t *nodes, err *e)
+/* sides: becomes bits of the first six words. Fixes the volumes at once. */
+static int take_words(model *m, const char *list, unsigned *sides, err *e)
 {
     model_array *rigid = model_find(m, "node.rigid");
-    unsigned sides = 0;
+    *sides = 0;
     if (!rigid && !(rigid = model_add(m, "node.rigid", e)))
         return -1;
     for (const char *p = list, *comma; p; p = comma ? comma + 1 : NULL) {
@@ -113,11 +114,27 @@ int mesh_fix(model *m, const char *list, const int32_t *nodes, err *e)
         if (known < 0 && !fix_volume(m, word, rigid->u8))
             return unknown(m, word, e);
         if (known >= 0 && known < SIDES)
-            sides |= 1U << known;
+            *sides |= 1U << known;
         else if (known == SIDES)
-            sides |= ALL_ROUND;
+            *sides |= ALL_ROUND;
     }
-    return sides ? fix_sides(m, sides, nodes, rigid->u8, e) : 0;
+    return 0;
+}
+
+int mesh_fix(model *m, const char *list, const int32_t *nodes, err *e)
+{
+    unsigned sides;
+    if (take_words(m, list, &sides, e))
+        return -1;
+    return sides ? fix_sides(m, sides, nodes, model_find(m, "node.rigid")->u8, e) : 0;
+}
+
+int mesh_fix_made(model *m, const char *list, const mesh_made *of, err *e)
+{
+    unsigned sides;
+    if (take_words(m, list, &sides, e))
+        return -1;
+    return sides ? mesh_sides_mark(of, sides, model_find(m, "node.rigid")->u8, e) : 0;
 }
 
 int64_t mesh_fixed(const model *m)

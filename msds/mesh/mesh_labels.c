@@ -155,8 +155,13 @@ static void add_missed(missed *m, int64_t value)
         m->value[m->count++] = value;
 }
 
+static bool left_out(const mesh_without *without, int64_t label)
+{
+    return without && without->is(without->context, label);
+}
+
 /* The image's labels that no element has. */
-static void find_missed(missed *m, const found *f, const volume *labels)
+static void find_missed(missed *m, const found *f, const volume *labels, const mesh_without *without)
 {
     double last = 0;
     for (int64_t voxel = 0; voxel < volume_count(labels) && !m->more; voxel++) {
@@ -165,7 +170,8 @@ static void find_missed(missed *m, const found *f, const volume *labels)
             continue;
         last = value;
         const int64_t label = (int64_t)value;
-        if (label && !bsearch(&label, f->value, (size_t)f->count, sizeof *f->value, compare))
+        if (label && !left_out(without, label) &&
+            !bsearch(&label, f->value, (size_t)f->count, sizeof *f->value, compare))
             add_missed(m, label);
     }
 }
@@ -180,10 +186,10 @@ static void note_one(const volume *labels, int64_t value, const char *what, note
 }
 
 /* What is too thin, or not where the mesh is; and names of no voxel. */
-static void note_missed(const found *f, const volume *labels, notes *warnings)
+static void note_missed(const found *f, const volume *labels, const mesh_without *without, notes *warnings)
 {
     missed m = {.count = 0};
-    find_missed(&m, f, labels);
+    find_missed(&m, f, labels, without);
     for (int i = 0; i < m.count; i++)
         note_one(labels, m.value[i],
                  "has no tetrahedron, because no tetrahedron has its centre in it; expected a label inside the mesh, "
@@ -195,7 +201,7 @@ static void note_missed(const found *f, const volume *labels, notes *warnings)
         bool any = bsearch(&labels->label[i].value, f->value, (size_t)f->count, sizeof *f->value, compare) != NULL;
         for (int k = 0; k < m.count; k++)
             any = any || m.value[k] == labels->label[i].value;
-        if (!any && labels->label[i].value)
+        if (!any && labels->label[i].value && !left_out(without, labels->label[i].value))
             note_one(labels, labels->label[i].value, "is named, but no voxel has this label", warnings);
     }
 }
@@ -230,7 +236,7 @@ static void put_volumes(model *m, const found *f, const int64_t *label)
     }
 }
 
-int mesh_label(model *m, const volume *labels, const char *where, notes *warnings, err *e)
+int mesh_label(model *m, const volume *labels, const char *where, const mesh_without *without, notes *warnings, err *e)
 {
     char tissue[] = "tissue", *const one[] = {tissue};
     int64_t elements = model_count(m, "element");
@@ -242,7 +248,7 @@ int mesh_label(model *m, const volume *labels, const char *where, notes *warning
     if (label && !find_labels(m, labels, where, label, e) && !find_volumes(&f, labels, label, elements, e) &&
         !add_table(m, f.names.name, f.names.count, e)) {
         put_volumes(m, &f, label);
-        note_missed(&f, labels, warnings);
+        note_missed(&f, labels, without, warnings);
         status = 0;
     }
     found_free(&f);

@@ -9,8 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Corners of a cell, in VTK's order of a hexahedron, by the cell's parity; all of volume above 0. */
-static const int8_t tets[2][MESH_TETS][4] = {
+const int8_t mesh_five[2][MESH_TETS][4] = {
     {{0, 2, 7, 5}, {1, 0, 5, 2}, {3, 0, 2, 7}, {4, 0, 7, 5}, {6, 2, 5, 7}},
     {{1, 3, 4, 6}, {0, 1, 3, 4}, {2, 1, 6, 3}, {5, 1, 4, 6}, {7, 3, 6, 4}},
 };
@@ -19,7 +18,7 @@ static const int8_t tets[2][MESH_TETS][4] = {
 static void put_cell(int32_t *node, const int32_t corner[8], int64_t parity, bool mirrored)
 {
     for (int t = 0; t < MESH_TETS; t++, node += 4) {
-        const int8_t *of = tets[parity & 1][t];
+        const int8_t *of = mesh_five[parity & 1][t];
         node[0] = corner[of[0]];
         node[1] = corner[of[1]];
         node[2] = corner[of[mirrored ? 3 : 2]];
@@ -89,19 +88,26 @@ static int count_box(const mesh_box *b, int64_t *nodes, int64_t *elements, err *
                    b->nodes[0], b->nodes[1], b->nodes[2], INT32_MAX);
 }
 
+int mesh_box_check(const mesh_box *b, bool *mirrored, err *e)
+{
+    const double volume = triple(b->edge[0], b->edge[1], b->edge[2]);
+    *mirrored = volume < 0;
+    if (isfinite(volume) && fabs(volume) > 0)
+        return 0;
+    return err_set(e, NULL, 0, "a box of %g m3; expected edges that span a volume", fabs(volume));
+}
+
 int mesh_box_add(model *m, const mesh_box *b, err *e)
 {
     int64_t nodes, elements;
-    double volume = triple(b->edge[0], b->edge[1], b->edge[2]);
-    if (count_box(b, &nodes, &elements, e))
+    bool mirrored;
+    if (count_box(b, &nodes, &elements, e) || mesh_box_check(b, &mirrored, e))
         return -1;
-    if (!isfinite(volume) || !(fabs(volume) > 0))
-        return err_set(e, NULL, 0, "a box of %g m3; expected edges that span a volume", fabs(volume));
     if (model_axis_add(m, "node", nodes, e) || model_axis_add(m, "element", elements, e) ||
         !model_add(m, "node.position", e) || !model_add_as(m, "element.node", MODEL_I32, "@node", "element", 4, e))
         return -1;
     put_positions(b, model_find(m, "node.position")->f64);
-    put_elements(b, volume < 0, model_find(m, "element.node")->i32);
+    put_elements(b, mirrored, model_find(m, "element.node")->i32);
     return 0;
 }
 

@@ -1,21 +1,31 @@
-/* msds-mesh: regular meshes of tetrahedra over a box, over a volume image, or from a voxel model (PST section IV). */
+/* msds-mesh: meshes of tetrahedra over a box, over a volume image or what of it is tissue, or from a voxel model (PST
+ * section IV). */
+#include "base/mem.h"
 #include "base/num.h"
 #include "model/materials.h"
 #include "model/stage.h"
+#include "msds/mesh/mesh_border.h"
 #include "msds/mesh/mesh_fix.h"
+#include "msds/mesh/mesh_graded.h"
 #include "msds/mesh/mesh_labels.h"
-#include "msds/mesh/mesh_tets.h"
+#include "msds/mesh/mesh_refine.h"
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 struct options {
     opt_common common;
-    const char *nodes, *like, *labels, *names, *materials, *fix;
-    opt_lengths size, origin;
+    const char *nodes, *like, *mask, *labels, *names, *materials, *fix;
+    opt_lengths size, origin, refine, around;
+    int top;
     double young, poisson, density;
 };
+
+static const char sides[] = "xmin|xmax|ymin|ymax|zmin|zmax";
+
+enum { ZMAX = 5 };
 
 #define TO(field) offsetof(struct options, field)
 static const opt option_list[] = {
@@ -26,26 +36,33 @@ static const opt option_list[] = {
      "lowest corner of the box [length; default 0,0,0]"},
     {OPT_INPUT, 0, "like", "VOLUME", OPT_TEXT, TO(like), 0, 0, NULL, OPT_FILE,
      "in place of --size: cover this volume image"},
+    {OPT_INPUT, 0, "mask", "WORDS", OPT_TEXT, TO(mask), 0, 0, "above:|tissue:|air:|sector", 0,
+     "leave out air: above:LEVEL, tissue:LABEL, air:LABEL, sector [default all is meshed]"},
     {OPT_INPUT, 0, "labels", "VOLUME", OPT_TEXT, TO(labels), 0, 0, NULL, OPT_FILE,
      "volumes by labels of this image [default one, tissue]"},
     {OPT_INPUT, 0, "names", "LABEL=NAME,...", OPT_TEXT, TO(names), 0, 0, NULL, 0,
      "names of labels [default as in the image, or labelN]"},
     {OPT_INPUT, 0, "materials", "FILE", OPT_TEXT, TO(materials), 0, 0, NULL, OPT_FILE,
      "materials of the volumes [default one, tissue]"},
+    {OPT_ACTION, 0, "refine", "DEPTH,...", OPT_LENGTHS, TO(refine), 1, MESH_LEVELS, NULL, 0,
+     "halve cells down to a depth, and again to the next [length; default none]"},
+    {OPT_ACTION, 0, "around", "X,Y,Z", OPT_LENGTHS, TO(around), 3, 3, NULL, 0,
+     "with --refine: distances from here, not depths [length]"},
+    {OPT_ACTION, 0, "top", "SIDE", OPT_CHOICE, TO(top), 0, 0, sides, 0, "where the probe is [default zmax]"},
     {OPT_ACTION, 0, "young", "E", OPT_NUMBER, TO(young), 1e-3, 1e12, NULL, 0, "Young's modulus [Pa; default 3000]"},
     {OPT_ACTION, 0, "poisson", "NU", OPT_NUMBER, TO(poisson), -0.99, 0.4999, NULL, 0, "Poisson's ratio [default 0.45]"},
     {OPT_ACTION, 0, "density", "RHO", OPT_NUMBER, TO(density), 1e-3, 1e6, NULL, 0,
      "mass density [kg/m3; default 1000]"},
     {OPT_ACTION, 0, "fix", "LIST", OPT_TEXT, TO(fix), 0, 0, "xmin|xmax|ymin|ymax|zmin|zmax|sides|none|@volume.name", 0,
-     "fix these sides and volumes, or none [default zmin]"},
+     "fix these sides and volumes, or none [default opposite the top]"},
     {0},
 };
 
 static const opt_tool table = {
     .name = "msds-mesh",
     .usage = "--nodes NXxNYxNZ [options] > model\n[options] < voxels > model",
-    .purpose = "Makes regular meshes of tetrahedra: over a box, over a volume image, or from\na model of voxels on "
-               "standard input.",
+    .purpose = "Makes meshes of tetrahedra: over a box, over a volume image or what of it is\ntissue, or from a model "
+               "of voxels on standard input.",
     .note = "Lengths are in m, unless they have a suffix (" NUM_UNITS_LIST "), e.g. 5cm.",
     .example = "msds-mesh --nodes 20x10x10 --size 8cm,4cm,4cm | sinew info",
     .operands = "",
@@ -79,10 +96,11 @@ static const char *mesh_option(const struct options *o)
     const struct {
         bool given;
         const char *name;
-    } options[] = {{o->size.count > 0, "--size"},    {o->origin.count > 0, "--origin"},
-                   {o->like != NULL, "--like"},      {o->labels != NULL, "--labels"},
-                   {!isnan(o->young), "--young"},    {!isnan(o->poisson), "--poisson"},
-                   {!isnan(o->density), "--density"}};
+    } options[] = {
+        {o->size.count > 0, "--size"},    {o->origin.count > 0, "--origin"}, {o->like != NULL, "--like"},
+        {o->mask != NULL, "--mask"},      {o->labels != NULL, "--labels"},   {o->refine.count > 0, "--refine"},
+        {o->top >= 0, "--top"},           {!isnan(o->young), "--young"},     {!isnan(o->poisson), "--poisson"},
+        {!isnan(o->density), "--density"}};
     for (size_t i = 0; i < sizeof options / sizeof *options; i++)
         if (options[i].given)
             return options[i].name;
@@ -97,10 +115,37 @@ static int check_model_options(const struct options *o, err *e)
     return 0;
 }
 
+static int check_mask(const struct options *o, err *e)
+{
+    bool labels;
+    if (!o->mask)
+        return 0;
+    if (mesh_mask_words(o->mask, &labels, e))
+        return -1;
+    if (!o->like)
+        return err_usage(e, "--mask is for --like VOLUME; expected both");
+    return labels && !o->labels ? err_usage(e, "--mask of labels is for --labels VOLUME; expected both") : 0;
+}
+
+static int check_refine(const struct options *o, err *e)
+{
+    const num_unit metre = num_unit_of("m");
+    if (o->around.count && !o->refine.count)
+        return err_usage(e, "--around is for --refine DEPTH,...; expected both");
+    for (int i = 0; i < o->refine.count; i++) {
+        const double here = num_length_in(o->refine.value[i], metre, metre);
+        if (!(here > 0) || (i && !(here <= num_length_in(o->refine.value[i - 1], metre, metre))))
+            return err_usage(e, "--refine: expected depths above 0, each at most the one before, such as 15mm,5mm");
+    }
+    return 0;
+}
+
 static int check_options(const struct options *o, int32_t nodes[3], err *e)
 {
     if (o->names && !o->labels)
         return err_usage(e, "--names is for --labels VOLUME; expected both");
+    if (check_refine(o, e))
+        return -1;
     if (!o->nodes)
         return check_model_options(o, e);
     if (parse_nodes(o->nodes, nodes, e))
@@ -113,6 +158,8 @@ static int check_options(const struct options *o, int32_t nodes[3], err *e)
     for (int a = 0; a < o->size.count; a++)
         if (!(o->size.value[a].value > 0))
             return err_usage(e, "--size: expected three lengths above 0");
+    if (check_mask(o, e))
+        return -1;
     if (o->like && o->labels && !strcmp(o->like, "-") && !strcmp(o->labels, "-"))
         return err_usage(e, "--like - and --labels -: standard input is read once; expected a file for one of them");
     bool standard = (o->like && !strcmp(o->like, "-")) || (o->labels && !strcmp(o->labels, "-"));
@@ -178,18 +225,112 @@ static int make_materials(const struct options *o, model *m, err *e)
     return o->materials ? read_materials(o, m, &usual, e) : materials_make(m, &usual, e);
 }
 
+static int load_labels(const struct options *o, volume *labels, err *e)
+{
+    if (!o->labels)
+        return 0;
+    if (volume_load(labels, o->labels, &(volume_budget){.most = o->common.memory}, e))
+        return -1;
+    return o->names ? mesh_label_names(labels, o->names, e) : 0;
+}
+
 static int make_volumes(const struct options *o, model *m, notes *warnings, err *e)
 {
     volume labels = {0};
-    if (!o->labels)
-        return mesh_label(m, NULL, NULL, warnings, e);
-    int status = volume_load(&labels, o->labels, &(volume_budget){.most = o->common.memory}, e);
-    if (!status && o->names)
-        status = mesh_label_names(&labels, o->names, e);
+    int status = load_labels(o, &labels, e);
     if (!status)
-        status = mesh_label(m, &labels, o->labels, warnings, e);
+        status = mesh_label(m, o->labels ? &labels : NULL, o->labels, NULL, warnings, e);
     volume_free(&labels);
     return status;
+}
+
+/* ---- of cells, where some are left out or halved */
+
+typedef struct graded {
+    mesh_refine refine;
+    double around[3]; /* m */
+    mesh_mask mask;
+    mesh_cells cells;
+    mesh_graded mesh;
+    mesh_moved moved;
+} graded;
+
+static void graded_free(graded *g)
+{
+    mesh_mask_free(&g->mask);
+    mesh_cells_free(&g->cells);
+    mesh_graded_free(&g->mesh);
+}
+
+static double mask_peak(const volume *v, const void *context)
+{
+    (void)context;
+    return volume_memory(v) + MESH_MASK_BYTES * (double)volume_count(v);
+}
+
+/* The box, and what of the image's voxels is tissue, but for labels. */
+static int look_at_image(const struct options *o, graded *g, mesh_box *b, model *m, err *e)
+{
+    const volume_budget budget = {.most = o->common.memory, .peak = o->mask ? mask_peak : NULL};
+    volume like = {0};
+    int status = volume_load(&like, o->like, &budget, e);
+    if (!status) {
+        double cell[3];
+        box_of_volume(&like, b);
+        for (int a = 0; a < 3; a++)
+            cell[a] = (double)like.size[a] / (b->nodes[a] - 1) / (1 << o->refine.count);
+        status = model_meta_set(m, "source.unit", "mm", e);
+        if (!status && o->mask)
+            status = mesh_mask_grey(&g->mask, o->mask, &like, g->refine.top, cell, e);
+    }
+    volume_free(&like);
+    return status;
+}
+
+static void plan_refine(const struct options *o, graded *g, const mesh_box *b)
+{
+    const num_unit metre = num_unit_of("m");
+    g->refine.box = b;
+    g->refine.mask = o->mask ? &g->mask : NULL;
+    g->refine.top = o->top < 0 ? ZMAX : o->top;
+    g->refine.levels = o->refine.count;
+    for (int i = 0; i < o->refine.count; i++)
+        g->refine.within[i] = num_length_in(o->refine.value[i], metre, metre);
+    for (int a = 0; a < o->around.count; a++)
+        g->around[a] = num_length_in(o->around.value[a], metre, metre);
+    g->refine.around = o->around.count ? g->around : NULL;
+}
+
+/* Cells that have no tissue are left out before there are tetrahedra. */
+static int leave_out(graded *g, err *e)
+{
+    uint8_t *tissue = mem_array(g->cells.count, 1, "cells", e);
+    if (!tissue)
+        return -1;
+    for (int64_t i = 0; i < g->cells.count; i++)
+        tissue[i] = mesh_mask_share(&g->mask, &g->cells, &g->cells.cell[i]) > 0;
+    mesh_cells_keep(&g->cells, tissue);
+    free(tissue);
+    return 0;
+}
+
+static int make_cells(const struct options *o, graded *g, const mesh_box *b, err *e)
+{
+    if (mesh_cells_make(&g->cells, b->nodes, g->refine.levels, mesh_refine_wish(&g->refine), e) ||
+        (o->mask && leave_out(g, e)) || mesh_graded_make(&g->mesh, b, &g->cells, e))
+        return -1;
+    return o->mask ? mesh_border_fit(&g->mesh, b, &g->cells, &g->mask, &g->moved, e) : 0;
+}
+
+/* Crumbs at the border are not worth a word. */
+static const double crumbs = .01; /* of the mesh */
+
+static void note_left(const graded *g, notes *warnings)
+{
+    const mesh_left *left = &g->moved.left;
+    if ((double)left->tets > crumbs * (double)g->mesh.tets)
+        notes_add(warnings, "left out: %lld tetrahedra of tissue, in %lld part%s that no face joins to the rest",
+                  (long long)left->tets, (long long)left->parts, left->parts == 1 ? "" : "s");
 }
 
 /* ---- say */
@@ -228,12 +369,23 @@ static double length_of(const double v[3])
     return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
 }
 
-static void say_cells(const tool *t, const mesh_box *b)
+static void say_cells(const tool *t, const mesh_box *b, const graded *g)
 {
+    int32_t least = MESH_UNITS(g->cells.levels);
     double side[3];
+    for (int64_t i = 0; i < g->cells.count; i++)
+        least = g->cells.cell[i].side < least ? g->cells.cell[i].side : least;
+    const double finest = (double)MESH_UNITS(g->cells.levels) / least;
     for (int a = 0; a < 3; a++)
         side[a] = 1e3 * length_of(b->edge[a]) / (b->nodes[a] - 1);
-    tool_say(t, "cells of %.6g x %.6g x %.6g mm", side[0], side[1], side[2]);
+    if (g->refine.levels)
+        tool_say(t, "cells of %.6g x %.6g x %.6g mm, the finest %.6g x %.6g x %.6g mm", side[0], side[1], side[2],
+                 side[0] / finest, side[1] / finest, side[2] / finest);
+    else
+        tool_say(t, "cells of %.6g x %.6g x %.6g mm", side[0], side[1], side[2]);
+    if (g->moved.nodes)
+        tool_say(t, "%lld of %lld nodes of the skin lie on the border of tissue, moved by at most %.3g mm",
+                 (long long)(g->moved.nodes - g->moved.off), (long long)g->moved.nodes, 1e3 * g->moved.largest);
 }
 
 static int say_all(const tool *t, const model *m, notes *warnings, err *e)
@@ -248,13 +400,50 @@ static int say_all(const tool *t, const model *m, notes *warnings, err *e)
     return 0;
 }
 
-/* ---- the two ways to a mesh */
+/* ---- the ways to a mesh */
+
+/* What is fixed where nothing is said: the side opposite the top. */
+static void fix_usual(const struct options *o, char word[8])
+{
+    const int opposite = (o->top < 0 ? ZMAX : o->top) ^ 1;
+    snprintf(word, 8, "%.4s", sides + opposite * 5);
+}
 
 static int from_nodes(const struct options *o, mesh_box *b, model *m, notes *warnings, err *e)
 {
+    char opposite[8];
+    fix_usual(o, opposite);
     if (make_box(o, b, m, e) || make_materials(o, m, e) || make_volumes(o, m, warnings, e))
         return -1;
-    return mesh_fix(m, o->fix ? o->fix : "zmin", b->nodes, e);
+    return mesh_fix(m, o->fix ? o->fix : opposite, b->nodes, e);
+}
+
+static int mesh_of_cells(const struct options *o, graded *g, mesh_box *b, model *m, const volume *labels, err *e)
+{
+    if (o->mask && mesh_mask_labels(&g->mask, o->mask, labels, o->labels, e))
+        return -1;
+    return make_cells(o, g, b, e) || mesh_graded_add(&g->mesh, m, e) ? -1 : 0;
+}
+
+static int from_cells(const struct options *o, graded *g, mesh_box *b, model *m, notes *warnings, err *e)
+{
+    volume labels = {0};
+    char opposite[8];
+    plan_refine(o, g, b);
+    fix_usual(o, opposite);
+    if (!o->like)
+        box_of_size(o, b);
+    int status = (o->like && look_at_image(o, g, b, m, e)) || load_labels(o, &labels, e);
+    if (!status) {
+        const volume *of = o->labels ? &labels : NULL;
+        const mesh_without without = {mesh_mask_leaves, &g->mask};
+        status = mesh_of_cells(o, g, b, m, of, e) || make_materials(o, m, e) ||
+                 mesh_label(m, of, o->labels, &without, warnings, e);
+    }
+    volume_free(&labels);
+    note_left(g, warnings);
+    const mesh_made made = {&g->mesh, b, &g->cells};
+    return status || mesh_fix_made(m, o->fix ? o->fix : opposite, &made, e) ? -1 : 0;
 }
 
 static int from_model(const struct options *o, stage *s, model *m, notes *warnings, err *e)
@@ -266,9 +455,17 @@ static int from_model(const struct options *o, stage *s, model *m, notes *warnin
     return o->fix ? mesh_fix(m, o->fix, NULL, e) : 0;
 }
 
+static int make_mesh(const struct options *o, stage *s, graded *g, mesh_box *b, model *m, notes *warnings, err *e)
+{
+    if (!o->nodes)
+        return from_model(o, s, m, warnings, e);
+    return o->mask || o->refine.count ? from_cells(o, g, b, m, warnings, e) : from_nodes(o, b, m, warnings, e);
+}
+
 static int run_tool(int argc, char **argv)
 {
-    struct options o = {.young = NAN, .poisson = NAN, .density = NAN};
+    struct options o = {.young = NAN, .poisson = NAN, .density = NAN, .top = -1};
+    graded g = {0};
     mesh_box b = {0};
     err e = {0};
     tool t = {0};
@@ -277,11 +474,10 @@ static int run_tool(int argc, char **argv)
     notes warnings = {0};
     if (tool_begin(&t, &table, argc, argv, &o, &e) || t.done || check_options(&o, b.nodes, &e))
         goto out;
-    if (stage_open_output(&s, &t, &e) ||
-        (o.nodes ? from_nodes(&o, &b, &m, &warnings, &e) : from_model(&o, &s, &m, &warnings, &e)))
+    if (stage_open_output(&s, &t, &e) || make_mesh(&o, &s, &g, &b, &m, &warnings, &e))
         goto out;
     if (o.nodes)
-        say_cells(&t, &b);
+        say_cells(&t, &b, &g);
     if (say_all(&t, &m, &warnings, &e))
         goto out;
     stage_write(&s, &m, &e);
@@ -289,6 +485,7 @@ out:
     tool_warn(&t, &warnings);
     if (!t.done)
         stage_close(&s, &t, &e);
+    graded_free(&g);
     model_free(&m);
     return tool_end(&t, &e);
 }

@@ -32,7 +32,7 @@ static void label(volume *labels, const char *names)
     const mesh_box box = {{3, 3, 3}, {0, 0, 0}, {{.004, 0, 0}, {0, .004, 0}, {0, 0, .004}}};
     if (mesh_box_add(&m, &box, &e) || materials_make(&m, &of, &e))
         abort();
-    int status = (*names ? mesh_label_names(labels, names, &e) : 0) || mesh_label(&m, labels, "fuzz", NULL, &e);
+    int status = (*names ? mesh_label_names(labels, names, &e) : 0) || mesh_label(&m, labels, "fuzz", NULL, NULL, &e);
     if (status != (e.text[0] != '\0'))
         abort();
     if (!status)

@@ -1,7 +1,10 @@
 /* The coarser lattices of a mesh: how many nodes they have, that what is linear on one is the same on the next, that
  * each matrix has the energy of the one before (Galerkin), that the coarsest is inverted; on a lattice, on one that
- * lies askew, on a mesh without any order, with nodes held fast inside; and the same bytes for any number of threads.
+ * lies askew, on a mesh without any order, with nodes held fast inside; the same bytes for any number of threads; and
+ * that cycles through them converge on a graded mesh as on a lattice.
  */
+// needs: msds/mesh/mesh_keys.c msds/mesh/mesh_cells.c msds/mesh/mesh_graded.c msds/mesh/mesh_refine.c
+// needs: msds/mesh/mesh_mask.c msds/mesh/mesh_runs.c
 // needs: msds/mesh/mesh_tets.c msds/problem/problem.c msds/problem/springs.c msds/problem/sell.c msds/cpu/lanes.c
 // needs: msds/cpu/lanes_loops.c msds/cpu/contacts.c msds/cpu/grips.c
 // needs: msds/problem/stiffness.c msds/cpu/cg.c msds/cuda/levels.c msds/cuda/parts.c
@@ -11,6 +14,8 @@
 #include "msds/cpu/cg.h"
 #include "msds/cuda/levels.h"
 #include "msds/cuda/parts.h"
+#include "msds/mesh/mesh_graded.h"
+#include "msds/mesh/mesh_refine.h"
 
 #include "tap.h"
 
@@ -49,16 +54,11 @@ static void shake(model *m, double by)
         x[i] += by * any(&seed);
 }
 
-static void make(subject *s, const tets *b, void (*change)(model *), double shaken, bool hold, int threads)
+/* Of the model that is there. */
+static void make_levels(subject *s, int threads)
 {
     err e = {0};
     msds_options o = tets_options();
-    tets_make(b, &s->m);
-    shake(&s->m, shaken);
-    if (change)
-        change(&s->m);
-    for (int64_t n = 100; hold && n < model_count(&s->m, "node"); n += 37)
-        model_find(&s->m, "node.rigid")->u8[n] = 1;
     s->threads = pool_create(threads, &e);
     tets_must(s->threads && !msds_problem_make(&s->p, &s->m, &o, &e) && !sell_make(&s->s, &s->p, &e) &&
                   !stiffness_make(&s->k, &s->p, false, s->threads, &e),
@@ -69,6 +69,38 @@ static void make(subject *s, const tets *b, void (*change)(model *), double shak
     tets_must(s->matrix.diagonal && s->matrix.block, &e);
     cg_fill(&s->matrix, &s->p, &s->k, s->threads);
     tets_must(!levels_make(&s->l, &s->p, &s->s, &s->matrix, s->threads, &e), &e);
+}
+
+static void make(subject *s, const tets *b, void (*change)(model *), double shaken, bool hold, int threads)
+{
+    tets_make(b, &s->m);
+    shake(&s->m, shaken);
+    if (change)
+        change(&s->m);
+    for (int64_t n = 100; hold && n < model_count(&s->m, "node"); n += 37)
+        model_find(&s->m, "node.rigid")->u8[n] = 1;
+    make_levels(s, threads);
+}
+
+/* 80 x 80 x 40 mm in cells of 10 mm, halved up to three times at the middle of the top; the bottom is held. */
+static void make_graded(subject *s, int halved)
+{
+    static const double middle[3] = {.04, .04, .04};
+    const mesh_box b = {{9, 9, 5}, {0}, {{.08, 0, 0}, {0, .08, 0}, {0, 0, .04}}};
+    const mesh_refine r = {.box = &b, .top = 5, .levels = halved, .within = {.02, .01, .005}, .around = middle};
+    mesh_cells c = {0};
+    mesh_graded g = {0};
+    err e = {0};
+    tets_must(!mesh_cells_make(&c, b.nodes, halved, mesh_refine_wish(&r), &e) && !mesh_graded_make(&g, &b, &c, &e) &&
+                  !mesh_graded_add(&g, &s->m, &e),
+              &e);
+    tets_tables(&(tets){.young = 3000, .poisson = .45, .density = 1000}, &s->m);
+    uint8_t *rigid = tets_array(&s->m, "node.rigid")->u8;
+    for (int64_t n = 0; n < g.nodes; n++)
+        rigid[n] = g.at[3 * n + 2] == 0;
+    mesh_graded_free(&g);
+    mesh_cells_free(&c);
+    make_levels(s, 2);
 }
 
 static void drop(subject *s)
@@ -273,6 +305,124 @@ static void test_two_parts(void)
     drop(&s);
 }
 
+/* ---- cycles */
+
+static double *numbers(int64_t count)
+{
+    err e = {0};
+    double *to = mem_array(count, sizeof *to, "test", &e);
+    tets_must(to != NULL, &e);
+    return to;
+}
+
+/* Steps of damped Jacobi. */
+static void smooth(const level *l, const double *b, double *x)
+{
+    const int64_t nodes = l->graph.nodes;
+    double *y = numbers(3 * nodes);
+    for (int step = 0; step < 2; step++) {
+        memset(y, 0, 3 * (size_t)nodes * sizeof *y);
+        apply(l, x, y);
+        for (int64_t n = 0; n < nodes; n++)
+            for (int i = 0; i < 9 && l->moves[n]; i++)
+                x[3 * n + i / 3] += 1.5 / l->largest *
+                                    (double)l->inverse[n / LANES * 9 * LANES + i * LANES + n % LANES] *
+                                    (b[3 * n + i % 3] - y[3 * n + i % 3]);
+    }
+    free(y);
+}
+
+static void solve_coarsest(const levels *l, const double *b, double *x)
+{
+    for (int64_t i = 0; i < l->order; i++)
+        for (int64_t j = 0; j < l->order; j++)
+            x[i] += (double)l->coarsest[i * l->order + j] * b[j];
+}
+
+/* One V-cycle, without recursion: down from the first level to the last, and up again; x[0]: its result. */
+static void cycle(const levels *l, double **b, double **x)
+{
+    const int last = l->count - 1;
+    for (int i = 0; i <= last; i++) {
+        const int64_t nodes = l->at[i].graph.nodes;
+        memset(x[i], 0, 3 * (size_t)nodes * sizeof **x);
+        if (i == last)
+            break;
+        double *y = numbers(3 * nodes);
+        smooth(&l->at[i], b[i], x[i]);
+        apply(&l->at[i], x[i], y);
+        for (int64_t k = 0; k < 3 * nodes; k++)
+            y[k] = l->at[i].moves[k / 3] ? b[i][k] - y[k] : 0;
+        memset(b[i + 1], 0, 3 * (size_t)l->at[i + 1].graph.nodes * sizeof **b);
+        times(&l->at[i].down, y, b[i + 1]);
+        free(y);
+    }
+    solve_coarsest(l, b[last], x[last]);
+    for (int i = last - 1; i >= 0; i--) {
+        const int64_t nodes = l->at[i].graph.nodes;
+        double *y = numbers(3 * nodes);
+        times(&l->at[i].up, x[i + 1], y);
+        for (int64_t k = 0; k < 3 * nodes; k++)
+            x[i][k] += l->at[i].moves[k / 3] ? y[k] : 0;
+        free(y);
+        smooth(&l->at[i], b[i], x[i]);
+    }
+}
+
+/* Conjugate gradients with a cycle each, until a random load is left to a millionth. */
+static int count_cycles(const levels *l)
+{
+    const level *f = &l->at[0];
+    const int64_t count = 3 * f->graph.nodes;
+    double *b[LEVELS_MOST], *x[LEVELS_MOST], *p = numbers(count), *q = numbers(count), before = 0;
+    uint32_t seed = 3;
+    int cycles = 0;
+    for (int i = 0; i < l->count; i++) {
+        b[i] = numbers(3 * l->at[i].graph.nodes);
+        x[i] = numbers(3 * l->at[i].graph.nodes);
+    }
+    for (int64_t i = 0; i < count; i++)
+        b[0][i] = f->moves[i / 3] ? any(&seed) : 0;
+    const double start = product(b[0], b[0], count);
+    for (; cycles < 100 && product(b[0], b[0], count) > 1e-12 * start; cycles++) {
+        cycle(l, b, x);
+        const double next = product(b[0], x[0], count);
+        for (int64_t i = 0; i < count; i++)
+            p[i] = x[0][i] + (cycles ? next / before : 0) * p[i];
+        before = next;
+        memset(q, 0, (size_t)count * sizeof *q);
+        apply(f, p, q);
+        for (int64_t i = 0; i < count; i++)
+            q[i] = f->moves[i / 3] ? q[i] : 0;
+        const double step = next / product(p, q, count);
+        for (int64_t i = 0; i < count; i++)
+            b[0][i] -= step * q[i];
+    }
+    for (int i = 0; i < l->count; i++) {
+        free(b[i]);
+        free(x[i]);
+    }
+    free(p);
+    free(q);
+    return cycles;
+}
+
+/* A lattice of the coarse cells alone would take 43 cycles for cells that are halved thrice. */
+static void test_graded(void)
+{
+    int cycles[4];
+    for (int halved = 0; halved < 4; halved++) {
+        subject s = {0};
+        make_graded(&s, halved);
+        cycles[halved] = count_cycles(&s.l);
+        for (int i = 0; halved == 2 && i + 1 < s.l.count; i++)
+            test_pair(&s.l.at[i], &s.l.at[i + 1], "graded", i);
+        ok(s.l.count == 2 + halved && cycles[halved] <= 17, "cells halved %d times: %d levels, %d cycles", halved,
+           s.l.count, cycles[halved]);
+        drop(&s);
+    }
+}
+
 int main(void)
 {
     static const tets block = {{32, 16, 16}, {.16, .08, .08}, 1e4, .45, 1000, 2, false};
@@ -287,5 +437,6 @@ int main(void)
     test_nothing_moves();
     test_held();
     test_two_parts();
+    test_graded();
     return done_testing();
 }
