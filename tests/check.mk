@@ -41,8 +41,8 @@ REPLAY := $(FUZZ_SRC:tests/fuzz/fuzz_%.c=$(BUILD)/tests/fuzz/replay_%)
 AS_NEEDED = -Wl,--as-needed
 # SOURCE|NEEDED, of all such lines: read at once, since a shell for each program takes seconds each time that make begins.
 NEEDED := $(shell awk '/^\/\/ needs:/ { for (i = 3; i <= NF; i++) print FILENAME "|" $$i }' $(wildcard tests/*/*.c))
-# tled/*/*.c: all but the main and what only cards use.
-needs = $(call objects,$(patsubst tled/*/*.c,$(filter-out tled/run/tled-run.c,$(TLED_SRC)),$(patsubst $(1)|%,%,$(filter $(1)|%,$(NEEDED)))))
+# A star stands for all such files; tled/*/*.c: all but the main and what only cards use.
+needs = $(call objects,$(wildcard $(patsubst tled/*/*.c,$(filter-out tled/run/tled-run.c,$(TLED_SRC)),$(patsubst $(1)|%,%,$(filter $(1)|%,$(NEEDED))))))
 
 # $(1): the program; $(2): flags; $(3), $(4): its source, where that has another name, and an object more.
 define test_program

@@ -45,7 +45,7 @@ static bool square_corner(const msds_problem *p, int64_t t, int c, double edge[3
     return true;
 }
 
-static double longest_of(const double edge[3][3])
+static double longest_of(double edge[3][3])
 {
     return sqrt(fmax(dot(edge[0], edge[0]), fmax(dot(edge[1], edge[1]), dot(edge[2], edge[2]))));
 }

@@ -2,13 +2,7 @@
  * Table I, whose figures stand beside, and with half a million nodes: CSV, the rounds of all interleaved. A sphere
  * presses the block, deeper with each frame, and starts again. `bench_msds_card [ROUNDS]`.
  */
-// needs: tests/bench/bench.c msds/mesh/mesh_tets.c msds/problem/problem.c msds/problem/springs.c msds/problem/sell.c
-// needs: msds/cpu/lanes.c msds/cpu/lanes_loops.c msds/cpu/contacts.c msds/cpu/grips.c
-// needs: msds/problem/stiffness.c msds/cpu/dissect.c msds/cpu/factor.c msds/cpu/exact.c msds/cpu/mixing.c msds/cpu/cg.c
-// needs: msds/cpu/compliance.c msds/cpu/mprgp.c
-// needs: msds/cpu/exact_making.c msds/cpu/msds_cpu.c msds/run/msds_executors.c msds/problem/largest.c
-// needs: msds/cpu/tissue.c msds/cpu/tissue_mesh.c msds/cpu/tissue_sums.c msds/cpu/tissue_work.c
-// needs: msds/cpu/tissue_walls.c msds/cpu/tissue_rest.c msds/problem/cavity.c
+// needs: msds/mesh/mesh_tets.c msds/problem/*.c msds/cpu/*.c tests/bench/bench.c msds/run/msds_executors.c
 #include "../unit/msds_block.h"
 
 #include "bench.h"

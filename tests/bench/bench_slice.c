@@ -5,16 +5,9 @@
  * conjugate gradients, then the image), as Table II counts them. `bench_slice [THREADS [ROUNDS [PLOT.dat]]]`:
  * PLOT.dat gets R and ms, for tests/bench/regions.plot.
  */
-// needs: tests/bench/bench.c msds/mesh/mesh_tets.c msds/problem/problem.c msds/problem/springs.c msds/problem/sell.c
-// needs: msds/cpu/lanes.c msds/cpu/lanes_loops.c msds/cpu/contacts.c msds/cpu/grips.c
-// needs: msds/problem/stiffness.c msds/cpu/dissect.c msds/cpu/factor.c msds/cpu/exact.c msds/cpu/mixing.c msds/cpu/cg.c
-// needs: msds/cpu/compliance.c msds/cpu/mprgp.c
-// needs: msds/cpu/exact_making.c msds/cpu/msds_cpu.c msds/run/msds_executors.c
-// needs: msds/cpu/tissue.c msds/cpu/tissue_mesh.c msds/cpu/tissue_sums.c msds/cpu/tissue_work.c
-// needs: msds/cpu/tissue_walls.c msds/cpu/tissue_rest.c msds/problem/cavity.c
-// needs: msds/problem/largest.c slice/image/slice_cells.c
-// needs: slice/image/slice_mesh.c slice/image/slice_cutter.c slice/image/slice_paper.c slice/image/slice_lanes.c
-// needs: slice/image/slice_lanes_loops.c
+// needs: msds/mesh/mesh_tets.c msds/problem/*.c msds/cpu/*.c tests/bench/bench.c msds/run/msds_executors.c
+// needs: slice/image/slice_cells.c slice/image/slice_mesh.c slice/image/slice_cutter.c slice/image/slice_paper.c
+// needs: slice/image/slice_lanes.c slice/image/slice_lanes_loops.c
 #include "../unit/msds_block.h"
 
 #include "bench.h"

@@ -4,12 +4,7 @@
  */
 // needs: msds/mesh/mesh_tets.c msds/mesh/mesh_keys.c msds/mesh/mesh_cells.c msds/mesh/mesh_graded.c
 // needs: msds/mesh/mesh_refine.c msds/mesh/mesh_mask.c msds/mesh/mesh_runs.c msds/mesh/mesh_around.c
-// needs: msds/mesh/mesh_sides.c msds/mesh/mesh_fix.c
-// needs: msds/problem/problem.c msds/problem/springs.c msds/problem/sell.c msds/cpu/lanes.c
-// needs: msds/cpu/lanes_loops.c msds/cpu/contacts.c
-// needs: msds/problem/stiffness.c msds/cpu/dissect.c msds/cpu/factor.c msds/cpu/exact.c msds/cpu/mixing.c msds/cpu/cg.c
-// needs: msds/cpu/exact_making.c msds/cpu/msds_cpu.c msds/problem/largest.c
-// needs: msds/cpu/tissue.c msds/cpu/tissue_mesh.c
+// needs: msds/mesh/mesh_sides.c msds/mesh/mesh_fix.c msds/problem/*.c msds/cpu/*.c
 #include "mesh_look.h"
 #include "msds_block.h"
 

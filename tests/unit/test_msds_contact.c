@@ -2,13 +2,7 @@
  * the two kinds of compliance against each other; equilibrium and contact of few and of many nodes, from the elements
  * alone, whatever the solver says; and what many nodes take against few.
  */
-// needs: msds/mesh/mesh_tets.c msds/problem/problem.c msds/problem/springs.c msds/problem/sell.c msds/cpu/lanes.c
-// needs: msds/cpu/lanes_loops.c msds/cpu/contacts.c msds/cpu/grips.c
-// needs: msds/problem/stiffness.c msds/cpu/dissect.c msds/cpu/factor.c msds/cpu/exact.c msds/cpu/mixing.c msds/cpu/cg.c
-// needs: msds/cpu/compliance.c msds/cpu/mprgp.c
-// needs: msds/cpu/exact_making.c msds/cpu/msds_cpu.c msds/problem/largest.c
-// needs: msds/cpu/tissue.c msds/cpu/tissue_mesh.c msds/cpu/tissue_sums.c msds/cpu/tissue_work.c
-// needs: msds/cpu/tissue_walls.c msds/cpu/tissue_rest.c msds/problem/cavity.c
+// needs: msds/mesh/mesh_tets.c msds/problem/*.c msds/cpu/*.c
 #include "msds_block.h"
 
 #include "msds/cpu/exact.h"
