@@ -5,16 +5,17 @@
 #include "msds/cpu/tissue_rest.h"
 #include "msds/cpu/tissue_walls.h"
 #include "msds/cpu/tissue_work.h"
+#include "msds/problem/line_search.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { FIELDS = 6, SEARCHES = 6 /* steps that a line search tries at most */ };
+enum { FIELDS = 6 };
 
 /* Conjugate gradients stop at this share of the square of what was left, so that Newton's next step begins from a new
- * tangent; a line search at this share of the slope. */
-static const double forcing = .01, enough = .5;
+ * tangent. */
+static const double forcing = .01;
 
 /* The length of a step along what is left: below 2 over the largest eigenvalue of the tangent times the inverse. */
 static const double fixed = .35;
@@ -356,15 +357,11 @@ static void shorten_by(tissue *t, double share)
     t->moved *= share;
 }
 
-/* So that no node goes farther than it may, and walls do not cross: at their nodes alone, or where the tissue would not
- * yield to what that leaves of the step, at all. */
-static void shorten(tissue *t)
+/* Shortens a step, by whose first share no node goes farther than it may, so that walls do not cross: at their nodes
+ * alone, or where the tissue would not yield to what that leaves of it, at all. */
+static void spare_walls(tissue *t, double first)
 {
-    const double most = stride * t->pressed.p->side / longest(t);
-    if (most < 1)
-        shorten_by(t, most);
-    if (t->m.walls == t->m.lumens)
-        return;
+    shorten_by(t, first);
     tissue_copy(t, &t->way, &t->step);
     const double least = tissue_walls_spare(&t->m, &t->step, t->share);
     if (dot(t, &t->first, &t->step) > t->moved)
@@ -373,30 +370,19 @@ static void shorten(tissue *t)
     shorten_by(t, fmax(least, yielding));
 }
 
-/* Goes along the step as far as that does not overshoot by much: what is left pulls along it, or back, by at most half
- * of the gain that was seen in what conjugate gradients added to it. All of the step may pull on. */
+/* Goes along the step as far as that does not overshoot by much. */
 static void search(tissue *t)
 {
-    const double gain = dot(t, &t->first, &t->step) - t->moved;
-    double share = 1;
-    double low = 0, at_low = gain, high = 0, at_high = 0; /* high: 0, if none is too far */
-    for (int i = 0;; i++) {
-        go(t, share);
-        find_left(t);
-        const double slope = slope_of(t);
-        const bool too_far = !(slope >= -enough * gain), too_near = high > 0 && slope > enough * gain;
-        if (i == SEARCHES - 1 || !(too_far || too_near))
-            return;
-        if (too_far) {
-            high = share;
-            at_high = slope;
-        } else {
-            low = share;
-            at_low = slope;
-        }
-        const double to = isfinite(at_high) ? at_low / (at_low - at_high) : 0;
-        share = low + (high - low) * fmin(fmax(to, .1), .7);
+    double share = fmin(1, stride * t->pressed.p->side / longest(t));
+    if (t->m.walls > t->m.lumens) {
+        spare_walls(t, share);
+        share = 1;
     }
+    line_search s = line_search_begin(dot(t, &t->first, &t->step) - t->moved, share);
+    do {
+        go(t, s.share);
+        find_left(t);
+    } while (line_search_next(&s, slope_of(t)));
 }
 
 /* The forces of contact, and what is left then, over the load. */
@@ -434,7 +420,6 @@ int64_t tissue_step(tissue *t, int64_t most)
     pressed_push(&t->pressed, t->u, &t->left);
     tissue_copy(t, &t->started, t->u);
     const int64_t took = find_step(t, most);
-    shorten(t);
     search(t);
     conclude(t);
     return took + 1;

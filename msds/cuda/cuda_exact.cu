@@ -349,5 +349,5 @@ static const void *kernel_of(const tissue *t, int processors)
 cudaError_t tissue_exact_start(const tissue *t, const tissue_frame *f, const tissue_exact *x, cudaStream_t stream)
 {
     tissue_exact view = *x;
-    return tissue_start(TISSUE_EXACT, kernel_of, t, f, &view, stream);
+    return tissue_start(TISSUE_EXACT, kernel_of, t, f, &view, t->chunks, stream);
 }

@@ -242,5 +242,5 @@ static const void *kernel_of(const tissue *t, int processors)
 
 cudaError_t tissue_fem_start(const tissue *t, const tissue_frame *f, cudaStream_t stream)
 {
-    return tissue_start(TISSUE_FEM, kernel_of, t, f, NULL, stream);
+    return tissue_start(TISSUE_FEM, kernel_of, t, f, NULL, t->chunks, stream);
 }

@@ -3,6 +3,7 @@
 #include "solve/card_layout.cuh"
 
 #include "msds/cuda/cuda_exact.cuh"
+#include "msds/cuda/cuda_newton.cuh"
 #include "msds/cuda/cuda_planes.cuh"
 
 #include <math.h>
@@ -28,9 +29,10 @@ struct msds_state {
     sell order;
     tissue t;
     tissue_exact x;
-    char *memory, *fem, *exact; /* of the card */
+    tissue_newton newton;
+    char *memory, *fem, *exact, *tets; /* of the card; tets: of the method tissue */
     card_planes planes;
-    int64_t bytes, fem_bytes, exact_bytes;
+    int64_t bytes, fem_bytes, exact_bytes, tets_bytes;
     void *staging;           /* pinned: nodes x float4, or x 3 doubles */
     tissue_outcome *outcome; /* pinned */
     bool precise;            /* t.precise is the state; else t.u */
@@ -184,6 +186,7 @@ static void cuda_destroy(cuda_state *s)
     card_give(s->memory);
     card_give(s->fem);
     card_give(s->exact);
+    card_give(s->tets);
     card_planes_free(&s->planes);
     if (s->stream)
         cudaStreamDestroy(s->stream);
@@ -276,10 +279,19 @@ static int make_exact(cuda_state *s, err *e)
     return result;
 }
 
+/* ---- the method tissue */
+
+static int make_newton(cuda_state *s, err *e)
+{
+    if (s->tets)
+        return 0;
+    return tissue_newton_make(&s->newton, s->p, &s->order, &s->tets, &s->tets_bytes, e);
+}
+
 /* ---- frames */
 
 cudaError_t tissue_start(tissue_kernel which, const void *(*of)(const tissue *t, int processors), const tissue *t,
-                         const tissue_frame *f, void *more, cudaStream_t stream)
+                         const tissue_frame *f, void *more, int32_t chunks, cudaStream_t stream)
 {
     int processors = 0, device = 0, fit = 0;
     tissue view = *t;
@@ -292,7 +304,7 @@ cudaError_t tissue_start(tissue_kernel which, const void *(*of)(const tissue *t,
     const void *kernel = of(t, processors);
     if (code == cudaSuccess)
         code = cudaOccupancyMaxActiveBlocksPerMultiprocessor(&fit, kernel, GRID_THREADS, 0);
-    const int blocks = fit * processors < t->chunks ? fit * processors : t->chunks;
+    const int blocks = fit * processors < chunks ? fit * processors : chunks;
     return code != cudaSuccess
                ? code
                : cudaLaunchCooperativeKernel(kernel, dim3((unsigned)blocks), dim3(GRID_THREADS), with, 0, stream);
@@ -332,6 +344,14 @@ static int step_fem(cuda_state *s, const tissue_frame *f, err *e)
                                                                                                                    : 0;
 }
 
+static int step_newton(cuda_state *s, const tissue_frame *f, err *e)
+{
+    return make_newton(s, e) ||
+                   card_check(tissue_newton_start(&s->t, f, &s->newton, s->stream), "the start of a frame", s->step, e)
+               ? -1
+               : 0;
+}
+
 static int step_exact(cuda_state *s, const tissue_frame *f, err *e)
 {
     if (make_exact(s, e))
@@ -343,18 +363,14 @@ static int step_exact(cuda_state *s, const tissue_frame *f, err *e)
 
 static int cuda_step(cuda_state *s, const msds_plan *p, int64_t count, err *e)
 {
+    static int (*const steps[])(cuda_state *, const tissue_frame *, err *) = {step_springs, step_fem, step_exact,
+                                                                              step_newton};
     if (p->warp && p->method != MSDS_SPRINGS)
         return err_set(e, NULL, 0, "--warp is not done on a card; expected -d cpu");
-    if (p->method == MSDS_TISSUE)
-        return err_set(e, NULL, 0, "the method tissue is not done on a card; expected -d cpu");
     if (p->touched && card_planes_put(&s->planes, &p->probe.shape, s->stream, s->step, e))
         return -1;
     const tissue_frame f = frame_of(s, p, count);
-    int result;
-    if (p->method == MSDS_SPRINGS)
-        result = step_springs(s, &f, e);
-    else
-        result = p->method == MSDS_FEM ? step_fem(s, &f, e) : step_exact(s, &f, e);
+    const int result = steps[p->method](s, &f, e);
     s->precise = p->method == MSDS_EXACT;
     s->step++;
     return result;
@@ -397,18 +413,16 @@ static int cuda_reset(cuda_state *s, err *e)
             return -1;
     s->precise = true;
     return clear(s, t->precise, 3 * nodes * sizeof *t->precise, e) || clear(s, t->held, nodes * sizeof *t->held, e) ||
-                   clear(s, t->listed, nodes, e) || clear(s, t->outcome, sizeof *t->outcome, e)
+                   clear(s, t->listed, nodes, e) || clear(s, t->outcome, sizeof *t->outcome, e) ||
+                   (s->tets && CUDA_TRY(tissue_newton_reset(&s->newton, s->stream)))
                ? -1
                : 0;
 }
 
-/* The lattices of a mesh are made in milliseconds, so nobody waits for long. */
+/* The lattices of a mesh are made in milliseconds; what the method tissue needs takes longer, so it is made here. */
 static int cuda_ready(cuda_state *s, const msds_plan *plan, err *e)
 {
-    (void)s;
-    (void)plan;
-    (void)e;
-    return 1;
+    return plan->method == MSDS_TISSUE && make_newton(s, e) ? -1 : 1;
 }
 
 static int cuda_monitor(cuda_state *s, msds_reading *reading, err *e)
@@ -456,11 +470,13 @@ static int64_t cuda_bytes(const cuda_state *s)
         bytes += s->fem_bytes;
     if (s->exact)
         bytes += s->exact_bytes;
+    if (s->tets)
+        bytes += s->tets_bytes;
     return bytes;
 }
 
 const msds_executor msds_cuda = {
-    .is = {.device = "cuda", .features = EXECUTOR_CONTACT, .forms = 0, .unusable = card_unusable},
+    .is = {.device = "cuda", .features = EXECUTOR_CONTACT | EXECUTOR_TISSUE, .forms = 0, .unusable = card_unusable},
     .skin = &msds_cuda_skin,
     .create = cuda_create,
     .destroy = cuda_destroy,

@@ -134,5 +134,5 @@ static const void *kernel_of(const tissue *t, int processors)
 
 cudaError_t tissue_springs_start(const tissue *t, const tissue_frame *f, cudaStream_t stream)
 {
-    return tissue_start(TISSUE_SPRINGS, kernel_of, t, f, NULL, stream);
+    return tissue_start(TISSUE_SPRINGS, kernel_of, t, f, NULL, t->chunks, stream);
 }

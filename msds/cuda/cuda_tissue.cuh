@@ -16,7 +16,7 @@ typedef struct tissue_contact {
     double way[3], depth, from[3], force; /* as contacts.h has them */
 } tissue_contact;
 
-typedef enum tissue_kernel { TISSUE_SPRINGS, TISSUE_FEM, TISSUE_EXACT, TISSUE_KERNELS } tissue_kernel;
+typedef enum tissue_kernel { TISSUE_SPRINGS, TISSUE_FEM, TISSUE_EXACT, TISSUE_NEWTON, TISSUE_KERNELS } tissue_kernel;
 
 enum { TISSUE_NOBODY, TISSUE_FREE, TISSUE_FIXED };
 
@@ -33,6 +33,16 @@ typedef enum tissue_part {
     PART_PRESSED = PART_TORQUE + 3,
     PART_LARGEST,
     PART_BROKEN,
+    PART_FREE, /* from here on: cuda_newton.cu's */
+    PART_OFF,
+    PART_WORK,
+    PART_CURVATURE,
+    PART_STIFFER,
+    PART_STEEPEST,
+    PART_ALONG,
+    PART_SLOPE,
+    PART_MORE_LEFT,
+    PART_MORE_LOAD,
     PARTS
 } tissue_part;
 
@@ -73,9 +83,9 @@ typedef struct tissue_frame {
 } tissue_frame;
 
 /* Starts a frame on the stream, by the kernel that `of` names for a card of so many multiprocessors; more: its third
- * argument, or NULL. As many blocks as there are chunks, or as the card holds at once. */
+ * argument, or NULL. As many blocks as there are chunks of its work, or as the card holds at once. */
 cudaError_t tissue_start(tissue_kernel which, const void *(*of)(const tissue *t, int processors), const tissue *t,
-                         const tissue_frame *f, void *more, cudaStream_t stream);
+                         const tissue_frame *f, void *more, int32_t chunks, cudaStream_t stream);
 
 cudaError_t tissue_springs_start(const tissue *t, const tissue_frame *f, cudaStream_t stream);
 cudaError_t tissue_fem_start(const tissue *t, const tissue_frame *f, cudaStream_t stream);

@@ -11,8 +11,8 @@
  * is what is left.
  *
  * Where this is included, stable_number is float, double or a vector of them, and stable_larger(a, b) gives the larger
- * of two. F = 1 + g; matrices are row by row. All is written in g and J - 1, so that small strains keep their digits.
- * Owns nothing.
+ * of two; nvcc compiles it for a card. F = 1 + g; matrices are row by row. All is written in g and J - 1, so that small
+ * strains keep their digits. Owns nothing.
  */
 #ifndef SINEW_STABLE_H
 #define SINEW_STABLE_H
@@ -27,7 +27,11 @@
 /* The x of stable_meeting below which its pressure does not grow. */
 #define STABLE_LEAST .02f
 
+#ifdef __CUDACC__
+#define STABLE_FUNCTION static __device__ __forceinline__
+#else
 #define STABLE_FUNCTION static inline __attribute__((always_inline))
+#endif
 
 /* mu and kappa of the moduli of linear elasticity. */
 #define STABLE_MU(mu)            (4 * (mu) / 3)
