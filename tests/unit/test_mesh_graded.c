@@ -4,6 +4,7 @@
  */
 // needs: msds/mesh/mesh_tets.c msds/mesh/mesh_keys.c msds/mesh/mesh_cells.c msds/mesh/mesh_graded.c
 // needs: msds/mesh/mesh_refine.c msds/mesh/mesh_mask.c msds/mesh/mesh_runs.c msds/mesh/mesh_around.c
+// needs: msds/mesh/mesh_chosen.c
 // needs: msds/mesh/mesh_sides.c msds/mesh/mesh_fix.c
 // needs: msds/problem/problem.c msds/problem/springs.c msds/problem/sell.c msds/cpu/lanes.c
 // needs: msds/cpu/lanes_loops.c msds/cpu/contacts.c
