@@ -447,6 +447,15 @@ static void take_corners(const maker *k, takers *to)
     }
 }
 
+/* The cavity of a lane that has an element or a triangle of one. */
+static int32_t cavity_at(const maker *k, int64_t i)
+{
+    const tissue_mesh *m = k->m;
+    if (i >= m->walls * LANES)
+        return m->point[4 * (i / LANES) * LANES + i % LANES] - m->cavity_point;
+    return k->at[i] >= 0 ? k->list[k->at[i]].cavity : 0;
+}
+
 /* Changes of volume, by points: each of an element of tissue; those of cavities and walls only where they matter. */
 static void take_swells(const maker *k, takers *to)
 {
@@ -455,10 +464,8 @@ static void take_swells(const maker *k, takers *to)
         for (int c = 0; c < 4 && k->at[i] >= 0; c++)
             take(to, m->point[(4 * (i / LANES) + c) * LANES + i % LANES], i);
     for (int64_t i = m->lumens * LANES; i < m->groups * LANES; i++) {
-        const int32_t of = i < m->walls * LANES ? (k->at[i] < 0 ? -1 : k->list[k->at[i]].cavity)
-                           : m->volume[i] > 0   ? m->point[4 * (i / LANES) * LANES + i % LANES] - m->cavity_point
-                                                : -1;
-        if (of >= 0 && k->p->cavity[of].outflow > 0)
+        const int32_t of = cavity_at(k, i);
+        if (m->volume[i] > 0 && k->p->cavity[of].outflow > 0)
             take(to, m->cavity_point + of, i);
     }
 }

@@ -11,7 +11,7 @@
 
 struct lanes_field;
 
-/* From which share of its volume on an element of a cavity gets stiff: walls that meet leave a quarter of that, about. */
+/* From which share of its volume on an element of a cavity gets stiff: of that walls that meet leave a quarter. */
 #define TISSUE_WALLS_THIN .1
 
 /* Triangles in place, and m->within; the mesh's arrays are made. -1 with e filled. */
@@ -22,8 +22,8 @@ int tissue_walls_fill(tissue_mesh *m, const msds_problem *p, const sell *s, cons
 void tissue_walls_brace(tissue_mesh *m);
 
 /* Shortens a step at nodes of elements of cavities that would lose most of what they still have of their volume, so
- * that walls come near before they meet. share: nodes, for the while. m->g: where the step begins. Returns the least that
- * a node takes of it. */
+ * that walls come near before they meet. share: nodes, for the while. m->g: where the step begins. Returns the least
+ * that a node takes of it. */
 double tissue_walls_spare(const tissue_mesh *m, struct lanes_field *step, float *share);
 
 /* Moduli, Pa, of the elements of each cavity: what they resist other changes of shape with, and how hard they are when

@@ -62,7 +62,8 @@ static __device__ inline void contact_consider(const tissue *t, const tissue_fra
 /* Notes the force of a node for the next frame. */
 static __device__ inline void contact_hold(const tissue *t, int32_t n)
 {
-    t->held[n] = !t->listed[n] ? 0 : t->contact[n].force > 0 ? t->contact[n].force : -1;
+    const double force = t->listed[n] ? t->contact[n].force : 0;
+    t->held[n] = t->listed[n] && !(force > 0) ? -1 : force;
 }
 
 /* The force and torque of a node on the probe. */

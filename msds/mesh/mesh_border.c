@@ -23,24 +23,9 @@ typedef struct mover {
     mesh_warp w;
     double pace;    /* m: of a search: half a voxel */
     double *normal; /* nodes x 3: outwards, on the box's sides along these; 0: the node stays */
-    double *edge;   /* nodes, m: the shortest as made */
 } mover;
 
 /* ---- which nodes, and which way */
-
-/* Whether all of a face is on one of the box's sides. */
-static bool on_side(const mesh_warp *w, const int32_t face[3])
-{
-    for (int a = 0; a < 3; a++) {
-        bool all = true;
-        for (int i = 0; i < 3; i++)
-            all = all && mesh_warp_on_side(w, face[i], a) &&
-                  w->g->at[3 * (int64_t)face[i] + a] == w->g->at[3 * (int64_t)face[0] + a];
-        if (all)
-            return true;
-    }
-    return false;
-}
 
 static void add_normal(const mover *k, const int32_t face[3])
 {
@@ -76,7 +61,7 @@ static void find_normals(const mover *k)
     for (int64_t t = 0; t < g->tets; t++)
         for (int c = 0; c < 4; c++) {
             mesh_around_face(g, t, c, face);
-            if (!on_side(&k->w, face) && mesh_around_beyond(g, &k->w.around, t, c) < 0)
+            if (!mesh_warp_face_on_side(&k->w, face) && mesh_around_beyond(g, &k->w.around, t, c) < 0)
                 add_normal(k, face);
         }
     keep_on_sides(k);
@@ -90,24 +75,6 @@ static bool moves(const mover *k, int64_t n)
 static void place_made(const mover *k, int64_t n, double to[3])
 {
     mesh_graded_place(k->w.box, k->w.cells, &k->w.g->at[3 * n], to);
-}
-
-static void find_edges(const mover *k)
-{
-    const mesh_graded *g = k->w.g;
-    for (int64_t n = 0; n < g->nodes; n++)
-        k->edge[n] = (double)INFINITY;
-    for (int64_t t = 0; t < g->tets; t++) {
-        double at[4][3], way[3];
-        for (int c = 0; c < 4; c++)
-            place_made(k, g->node[4 * t + c], at[c]);
-        for (int i = 0; i < 16; i++) {
-            const int64_t n = g->node[4 * t + i / 4];
-            shape_less(at[i / 4], at[i % 4], way);
-            if (i / 4 != i % 4)
-                k->edge[n] = fmin(k->edge[n], shape_length(way));
-        }
-    }
 }
 
 /* ---- how far */
@@ -124,7 +91,7 @@ static double tissue_along(const mover *k, int64_t n, double way)
  * else inwards. */
 static double way_to_border(const mover *k, int64_t n)
 {
-    const double here = tissue_along(k, n, 0), sense = here > 0 ? 1 : -1, far = reach * k->edge[n];
+    const double here = tissue_along(k, n, 0), sense = here > 0 ? 1 : -1, far = reach * k->w.edge[n];
     const int steps = (int)fmin(fmax(ceil(far / k->pace), 1), STEPS_MOST);
     double low = 0, high = 0;
     int i = 0;
@@ -160,26 +127,18 @@ static double distance_moved(const mover *k, int64_t n)
     return shape_length(off);
 }
 
-static bool all_good(const mover *k, int64_t n)
-{
-    for (int64_t i = k->w.around.start[n]; i < k->w.around.start[n + 1]; i++)
-        if (!mesh_warp_good(&k->w, k->w.around.element[i]))
-            return false;
-    return true;
-}
-
 /* As far as its tetrahedra stay good. */
 static void move(const mover *k, int64_t n)
 {
     double *position = &k->w.g->position[3 * n], from[3];
     const double way = way_to_border(k, n);
-    if (!isfinite(way) || is_on(way, k->edge[n]))
+    if (!isfinite(way) || is_on(way, k->w.edge[n]))
         return;
     memcpy(from, position, sizeof from);
     for (size_t i = 0; i < sizeof tries / sizeof *tries; i++) {
         for (int a = 0; a < 3; a++)
             position[a] = from[a] + tries[i] * way * k->normal[3 * n + a];
-        if (distance_moved(k, n) <= reach_all * k->edge[n] && all_good(k, n))
+        if (distance_moved(k, n) <= reach_all * k->w.edge[n] && mesh_warp_all_good(&k->w, n, MESH_QUALITY_KEPT))
             return;
     }
     memcpy(position, from, sizeof from);
@@ -191,7 +150,7 @@ static void count_moved(const mover *k, mesh_moved *to)
         if (!moves(k, n))
             continue;
         to->nodes++;
-        to->off += !is_on(way_to_border(k, n), k->edge[n]);
+        to->off += !is_on(way_to_border(k, n), k->w.edge[n]);
         to->largest = fmax(to->largest, distance_moved(k, n));
     }
 }
@@ -210,20 +169,17 @@ static int move_all(mover *k, mesh_moved *moved, err *e)
 {
     const mesh_graded *g = k->w.g;
     k->normal = mem_array(g->nodes, 3 * sizeof *k->normal, "nodes", e);
-    k->edge = k->normal ? mem_array(g->nodes, sizeof *k->edge, "nodes", e) : NULL;
-    if (k->edge) {
+    if (k->normal) {
         k->pace = pace_of(k->w.mask);
         find_normals(k);
-        find_edges(k);
         for (int s = 0; s < SWEEPS; s++)
             for (int64_t n = 0; n < g->nodes; n++)
                 if (moves(k, n))
                     move(k, n);
         count_moved(k, moved);
     }
-    const int status = k->edge ? 0 : -1;
+    const int status = k->normal ? 0 : -1;
     free(k->normal);
-    free(k->edge);
     return status;
 }
 

@@ -3,6 +3,7 @@
 #include "base/mem.h"
 #include "base/num.h"
 #include "model/materials.h"
+#include "msds/mesh/mesh_chosen.h"
 #include "surface/names.h"
 
 #include <inttypes.h>
@@ -78,11 +79,8 @@ static int find_labels(const model *m, const volume *labels, const char *where, 
         double at[3];
         centre(&node->i32[4 * n], position->f64, at);
         int64_t voxel = volume_nearest(labels, &f, at);
-        double value = voxel < 0 ? 0 : volume_value(labels, voxel);
-        if (!(fabs(value) <= 9e15) || fabs(value - floor(value)) > 0)
-            return err_set(e, where, 0, "voxel %" PRId64 " is %g; expected labels, which are whole numbers", voxel,
-                           value);
-        label[n] = (int64_t)value;
+        if (mesh_chosen_read(labels, voxel, where, &label[n], e))
+            return -1;
     }
     return 0;
 }
@@ -236,7 +234,8 @@ static void put_volumes(model *m, const found *f, const int64_t *label)
     }
 }
 
-int mesh_label(model *m, const volume *labels, const char *where, const mesh_without *without, notes *warnings, err *e)
+int mesh_label(model *m, const volume *labels, const char *where, const int64_t *given, const mesh_without *without,
+               notes *warnings, err *e)
 {
     char tissue[] = "tissue", *const one[] = {tissue};
     int64_t elements = model_count(m, "element");
@@ -245,7 +244,9 @@ int mesh_label(model *m, const volume *labels, const char *where, const mesh_wit
         return add_table(m, one, 1, e);
     int64_t *label = mem_array(elements, sizeof *label, "labels", e);
     int status = -1;
-    if (label && !find_labels(m, labels, where, label, e) && !find_volumes(&f, labels, label, elements, e) &&
+    if (label && given)
+        memcpy(label, given, (size_t)elements * sizeof *label);
+    if (label && (given || !find_labels(m, labels, where, label, e)) && !find_volumes(&f, labels, label, elements, e) &&
         !add_table(m, f.names.name, f.names.count, e)) {
         put_volumes(m, &f, label);
         note_missed(&f, labels, without, warnings);

@@ -14,11 +14,13 @@ typedef struct mesh_without {
     const void *context;
 } mesh_without;
 
-/* Adds volume.* and element.volume. labels: NULL: all is tissue. A label is named as the image names it, else
- * labelN; two labels of one name are one volume. A volume is of the material of its name, else of the first. -1 with
- * e filled: labels that are not whole numbers, no memory. where: the image's name. What labels the image or its
- * names have, but no element, is noted, but for those of without, which may be NULL. */
-int mesh_label(model *m, const volume *labels, const char *where, const mesh_without *without, notes *warnings, err *e);
+/* Adds volume.* and element.volume. labels: NULL: all is tissue. given: the label of each element, in place of that at
+ * its centre, or NULL. A label is named as the image names it, else labelN; two labels of one name are one volume. A
+ * volume is of the material of its name, else of the first. -1 with e filled: labels that are not whole numbers, no
+ * memory. where: the image's name. What labels the image or its names have, but no element, is noted, but for those of
+ * without, which may be NULL. */
+int mesh_label(model *m, const volume *labels, const char *where, const int64_t *given, const mesh_without *without,
+               notes *warnings, err *e);
 
 /* Names labels by "1=bone,2=vein". -1 with e filled (a usage error). */
 int mesh_label_names(volume *labels, const char *list, err *e);

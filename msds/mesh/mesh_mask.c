@@ -1,18 +1,15 @@
 #include "msds/mesh/mesh_mask.h"
 
-#include "base/chars.h"
 #include "base/mem.h"
-#include "base/near.h"
 #include "base/num.h"
 #include "msds/mesh/mesh_runs.h"
 
-#include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { WORD = 400, LABELS = 128, HALF_MOST = 19 /* voxels: (2 x 19 + 1)^3 can be counted in 16 bits */ };
+enum { WORD = 400, HALF_MOST = 19 /* voxels: (2 x 19 + 1)^3 can be counted in 16 bits */ };
 
 /* ---- words */
 
@@ -103,7 +100,7 @@ static void sum_lines(uint16_t *sum, const int64_t size[3], const int64_t half[3
 /* How many voxels of a line are within half of one. */
 static int64_t near_count(int64_t at, int64_t size, int64_t half)
 {
-    const int64_t low = at - half < 0 ? 0 : at - half, high = at + half >= size ? size - 1 : at + half;
+    const int64_t low = num_clamp_int(at - half, 0, size - 1), high = num_clamp_int(at + half, 0, size - 1);
     return high - low + 1;
 }
 
@@ -220,49 +217,10 @@ int mesh_mask_grey(mesh_mask *m, const char *list, const volume *like, int top, 
 
 /* ---- what has a label */
 
-static bool is_chosen(const mesh_chosen *c, int64_t value)
-{
-    for (int i = 0; i < c->count; i++)
-        if (c->value[i] == value)
-            return true;
-    return false;
-}
-
 bool mesh_mask_leaves(const void *m, int64_t label)
 {
     const mesh_mask *mask = m;
-    return (mask->only.count && !is_chosen(&mask->only, label)) || is_chosen(&mask->air, label);
-}
-
-static int too_many(err *e)
-{
-    return err_usage(e, "--mask: more than %d labels; expected fewer, or ones of fewer names", LABELS);
-}
-
-static int unknown_label(const volume *labels, const char *name, err *e)
-{
-    const char **list = mem_array(labels->labels, sizeof *list, "names", e);
-    for (int i = 0; list && i < labels->labels; i++)
-        list[i] = labels->label[i].name;
-    if (list)
-        near_option(e, "--mask", "label", name, list, labels->labels);
-    free(list);
-    return -1;
-}
-
-/* A number, or a name, which several labels may have. */
-static int choose(mesh_chosen *c, const volume *labels, const char *name, err *e)
-{
-    const int before = c->count;
-    int64_t value;
-    if (!num_int(name, INT64_MIN, INT64_MAX, &value)) {
-        c->value[c->count++] = value;
-        return 0;
-    }
-    for (int i = 0; i < labels->labels && c->count < LABELS; i++)
-        if (chars_mean(name, labels->label[i].name))
-            c->value[c->count++] = labels->label[i].value;
-    return c->count > before ? 0 : unknown_label(labels, name, e);
+    return (mask->only.count && !mesh_chosen_has(&mask->only, label)) || mesh_chosen_has(&mask->air, label);
 }
 
 static int choose_all(mesh_mask *m, const char *list, const volume *labels, err *e)
@@ -274,21 +232,9 @@ static int choose_all(mesh_mask *m, const char *list, const volume *labels, err 
         if (w.kind != TISSUE && w.kind != AIR)
             continue;
         mesh_chosen *to = w.kind == TISSUE ? &m->only : &m->air;
-        if (to->count == LABELS)
-            return too_many(e);
-        if (choose(to, labels, w.text, e))
+        if (mesh_chosen_add(to, labels, "--mask", w.text, e))
             return -1;
     }
-    return 0;
-}
-
-static int read_label(const volume *labels, int64_t voxel, const char *where, int64_t *to, err *e)
-{
-    const double value = voxel < 0 ? 0 : volume_value(labels, voxel);
-    *to = 0;
-    if (!(fabs(value) <= 9e15) || fabs(value - floor(value)) > 0)
-        return err_set(e, where, 0, "voxel %" PRId64 " is %g; expected labels, which are whole numbers", voxel, value);
-    *to = (int64_t)value;
     return 0;
 }
 
@@ -305,7 +251,7 @@ static int take_labels(mesh_mask *m, const volume *labels, const char *where, er
                 const double voxel[3] = {(double)i, (double)j, (double)k};
                 double at[3];
                 volume_place(&m->place, voxel, at);
-                if (read_label(labels, volume_nearest(labels, &f, at), where, &label, e))
+                if (mesh_chosen_read(labels, volume_nearest(labels, &f, at), where, &label, e))
                     return -1;
                 *to &= !mesh_mask_leaves(m, label);
             }

@@ -13,15 +13,10 @@
 #define SINEW_MESH_MASK_H
 
 #include "msds/mesh/mesh_cells.h"
-#include "volume/volume.h"
+#include "msds/mesh/mesh_chosen.h"
 
 /* A side of the box: axis * 2, + 1 at its high end. */
 enum { MESH_SIDES = 6 };
-
-typedef struct mesh_chosen { /* labels */
-    int64_t value[128];
-    int count;
-} mesh_chosen;
 
 typedef struct mesh_mask {
     volume place;          /* the image's geometry; no voxels, no names */

@@ -2,14 +2,11 @@
 
 #include "base/mem.h"
 #include "msds/mesh/mesh_shape.h"
+#include "msds/mesh/mesh_way.h"
 
 #include <stdlib.h>
 
-enum {
-    PASSES = 5,   /* of which each goes a further eighth of edges */
-    STEPS = 8,    /* of a search along a line */
-    HALVINGS = 24 /* of an edge that crosses the border */
-};
+enum { PASSES = 5 }; /* of which each goes a further eighth of edges */
 
 static const double pass_reach = .125; /* of an edge */
 
@@ -17,19 +14,48 @@ static const double rounding = 1e-9; /* of the box's edges */
 
 enum { AIR = -1, BORDER = 0, TISSUE = 1 };
 
+/* What tetrahedra and edges are as made. */
+static void look_at_rest(const mesh_warp *w)
+{
+    const mesh_graded *g = w->g;
+    for (int64_t n = 0; n < g->nodes; n++)
+        w->edge[n] = (double)INFINITY;
+    for (int64_t t = 0; t < g->tets; t++) {
+        double at[4][3], way[3];
+        for (int c = 0; c < 4; c++)
+            mesh_graded_place(w->box, w->cells, &g->at[3 * (int64_t)g->node[4 * t + c]], at[c]);
+        w->rest[t] = shape_quality(at[0]);
+        for (int i = 0; i < 16; i++) {
+            const int64_t n = g->node[4 * t + i / 4];
+            shape_less(at[i / 4], at[i % 4], way);
+            if (i / 4 != i % 4)
+                w->edge[n] = fmin(w->edge[n], shape_length(way));
+        }
+    }
+}
+
 int mesh_warp_make(mesh_warp *w, const mesh_box *b, const mesh_cells *c, const mesh_mask *mask, mesh_graded *g, err *e)
 {
-    *w = (mesh_warp){.box = b, .cells = c, .mask = mask, .g = g, .finder = volume_finder_of(&mask->place)};
+    *w = (mesh_warp){.box = b, .cells = c, .mask = mask, .g = g};
+    if (mask)
+        w->finder = volume_finder_of(&mask->place);
     for (int a = 0; a < 3; a++) {
         memcpy(w->unit[a], b->edge[a], sizeof w->unit[a]);
         shape_unit(w->unit[a]);
     }
+    w->rest = mem_array(g->tets, sizeof *w->rest, "tetrahedra", e);
+    w->edge = w->rest ? mem_array(g->nodes, sizeof *w->edge, "nodes", e) : NULL;
+    if (!w->edge)
+        return -1;
+    look_at_rest(w);
     return mesh_around_make(&w->around, g, e);
 }
 
 void mesh_warp_free(mesh_warp *w)
 {
     mesh_around_free(&w->around);
+    free(w->rest);
+    free(w->edge);
     *w = (mesh_warp){0};
 }
 
@@ -56,35 +82,54 @@ bool mesh_warp_stays(const mesh_warp *w, int64_t node, int axis)
     return mesh_warp_on_side(w, node, axis) && mesh_warp_tissue(w, &w->g->position[3 * node]) > 0;
 }
 
+bool mesh_warp_face_on_side(const mesh_warp *w, const int32_t face[3])
+{
+    for (int a = 0; a < 3; a++) {
+        bool all = true;
+        for (int i = 0; i < 3; i++)
+            all = all && mesh_warp_on_side(w, face[i], a) &&
+                  w->g->at[3 * (int64_t)face[i] + a] == w->g->at[3 * (int64_t)face[0] + a];
+        if (all)
+            return true;
+    }
+    return false;
+}
+
+double mesh_warp_kept(const mesh_warp *w, int64_t tet)
+{
+    double now[4][3];
+    for (int c = 0; c < 4; c++)
+        memcpy(now[c], &w->g->position[3 * (int64_t)w->g->node[4 * tet + c]], sizeof now[c]);
+    return shape_quality(now[0]) / w->rest[tet];
+}
+
 bool mesh_warp_good(const mesh_warp *w, int64_t tet)
 {
-    double now[4][3], rest[4][3];
-    for (int c = 0; c < 4; c++) {
-        const int64_t n = w->g->node[4 * tet + c];
-        memcpy(now[c], &w->g->position[3 * n], sizeof now[c]);
-        mesh_graded_place(w->box, w->cells, &w->g->at[3 * n], rest[c]);
-    }
-    return shape_quality(now[0]) >= MESH_QUALITY_KEPT * shape_quality(rest[0]);
+    return mesh_warp_kept(w, tet) >= MESH_QUALITY_KEPT;
+}
+
+bool mesh_warp_all_good(const mesh_warp *w, int64_t node, double least)
+{
+    for (int64_t i = w->around.start[node]; i < w->around.start[node + 1]; i++)
+        if (!(mesh_warp_kept(w, w->around.element[i]) >= least))
+            return false;
+    return true;
 }
 
 /* ---- edges */
 
+static int is_in_tissue(const void *w, const double place[3])
+{
+    return mesh_warp_tissue(w, place) > 0;
+}
+
 /* The share of the way from p to q at which tissue ends or begins. */
 static double crossing(const mesh_warp *w, int64_t p, int64_t q)
 {
-    const double *from = &w->g->position[3 * p], *to = &w->g->position[3 * q];
-    const bool tissue = mesh_warp_tissue(w, from) > 0;
-    double low = 0, high = 1, place[3];
-    for (int h = 0; h < HALVINGS; h++) {
-        const double middle = .5 * (low + high);
-        for (int a = 0; a < 3; a++)
-            place[a] = from[a] + middle * (to[a] - from[a]);
-        if ((mesh_warp_tissue(w, place) > 0) == tissue)
-            low = middle;
-        else
-            high = middle;
-    }
-    return .5 * (low + high);
+    const mesh_field tissue = {is_in_tissue, w};
+    double edge[3];
+    shape_less(&w->g->position[3 * q], &w->g->position[3 * p], edge);
+    return mesh_way(&tissue, &w->g->position[3 * p], edge, 1, 1);
 }
 
 /* Whether a node may go along an edge: one that stays on a side of the box, only to a node that is on it too. */
@@ -133,52 +178,14 @@ static double nearest(const mesh_warp *w, const int8_t *state, int64_t n, double
     return least;
 }
 
-/* From a node along a unit vector to where tissue ends or begins, m, at most `most`; infinite: it does not. */
-static double way_along(const mesh_warp *w, const double from[3], const double along[3], double most)
-{
-    const bool tissue = mesh_warp_tissue(w, from) > 0;
-    double low = 0, high = 0, place[3];
-    bool crossed = false;
-    for (int i = 1; i <= STEPS && !crossed; i++) {
-        low = high;
-        high = most * i / STEPS;
-        for (int a = 0; a < 3; a++)
-            place[a] = from[a] + high * along[a];
-        crossed = (mesh_warp_tissue(w, place) > 0) != tissue;
-    }
-    for (int h = 0; crossed && h < HALVINGS; h++) {
-        const double middle = .5 * (low + high);
-        for (int a = 0; a < 3; a++)
-            place[a] = from[a] + middle * along[a];
-        if ((mesh_warp_tissue(w, place) > 0) == tissue)
-            low = middle;
-        else
-            high = middle;
-    }
-    return crossed ? .5 * (low + high) : (double)INFINITY;
-}
-
-/* The place on the border that is nearest to a node, as if the border were the plane through where it crosses the
- * box's axes. way: to some crossing, m. False: no axis crosses it near by. */
+/* The place on the border that is nearest to a node. way: to some crossing, m. */
 static bool foot(const mesh_warp *w, int64_t n, double way, double to[3])
 {
-    const double *from = &w->g->position[3 * n], far = 3 * way;
-    double along[3] = {0};
-    for (int a = 0; a < 3; a++) {
-        double back[3];
-        for (int i = 0; i < 3; i++)
-            back[i] = -w->unit[a][i];
-        if (mesh_warp_stays(w, n, a))
-            continue;
-        const double up = way_along(w, from, w->unit[a], far), down = way_along(w, from, back, far);
-        for (int i = 0; i < 3; i++)
-            along[i] += (up < down ? 1 / up : -1 / down) * w->unit[a][i];
-    }
-    shape_unit(along);
-    const double length = way_along(w, from, along, 1.5 * way);
-    for (int i = 0; i < 3; i++)
-        to[i] = from[i] + length * along[i];
-    return isfinite(length);
+    const mesh_field tissue = {is_in_tissue, w};
+    bool stays[3];
+    for (int a = 0; a < 3; a++)
+        stays[a] = mesh_warp_stays(w, n, a);
+    return mesh_way_foot(&tissue, w->unit, stays, &w->g->position[3 * n], way, to);
 }
 
 static void go(const mesh_warp *w, int8_t *state, int64_t n, double most)

@@ -22,9 +22,11 @@ typedef struct mesh_warp {
     mesh_around around; /* of g; owned */
     volume_finder finder;
     double unit[3][3]; /* vectors of length 1 along the box's edges */
+    double *rest;      /* tets: quality as made; owned */
+    double *edge;      /* nodes, m: the shortest as made; owned */
 } mesh_warp;
 
-/* w: zeroed. -1 with e filled, and to be freed all the same: no memory. */
+/* w: zeroed. mask: NULL: nobody asks for tissue. -1 with e filled, and to be freed all the same: no memory. */
 int mesh_warp_make(mesh_warp *w, const mesh_box *b, const mesh_cells *c, const mesh_mask *mask, mesh_graded *g, err *e);
 void mesh_warp_free(mesh_warp *w);
 
@@ -35,8 +37,15 @@ double mesh_warp_tissue(const mesh_warp *w, const double place[3]);
 bool mesh_warp_on_side(const mesh_warp *w, int64_t node, int axis);
 bool mesh_warp_stays(const mesh_warp *w, int64_t node, int axis);
 
-/* Whether a tetrahedron has kept its quality. */
+/* Whether all of a face is on one of the box's sides. */
+bool mesh_warp_face_on_side(const mesh_warp *w, const int32_t face[3]);
+
+/* The share of its quality that a tetrahedron has kept, and whether it is enough. */
+double mesh_warp_kept(const mesh_warp *w, int64_t tet);
 bool mesh_warp_good(const mesh_warp *w, int64_t tet);
+
+/* Whether all tetrahedra of a node have kept so much. */
+bool mesh_warp_all_good(const mesh_warp *w, int64_t node, double least);
 
 /* The first step: moves nodes, and marks the tetrahedra that are tissue (tets bytes, zeroed). -1 with e filled: no
  * memory. */

@@ -9,6 +9,7 @@
 #include "msds/mesh/mesh_graded.h"
 #include "msds/mesh/mesh_labels.h"
 #include "msds/mesh/mesh_refine.h"
+#include "msds/mesh/mesh_walls.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -17,7 +18,7 @@
 
 struct options {
     opt_common common;
-    const char *nodes, *like, *mask, *labels, *names, *materials, *fix;
+    const char *nodes, *like, *mask, *labels, *names, *smooth, *materials, *fix;
     opt_lengths size, origin, refine, around;
     int top;
     double young, poisson, density;
@@ -42,6 +43,8 @@ static const opt option_list[] = {
      "volumes by labels of this image [default one, tissue]"},
     {OPT_INPUT, 0, "names", "LABEL=NAME,...", OPT_TEXT, TO(names), 0, 0, NULL, 0,
      "names of labels [default as in the image, or labelN]"},
+    {OPT_INPUT, 0, "smooth", "NAME,...", OPT_TEXT, TO(smooth), 0, 0, NULL, 0,
+     "smooth borders of these volumes of --labels, such as vessels [default none]"},
     {OPT_INPUT, 0, "materials", "FILE", OPT_TEXT, TO(materials), 0, 0, NULL, OPT_FILE,
      "materials of the volumes [default one, tissue]"},
     {OPT_ACTION, 0, "refine", "DEPTH,...", OPT_LENGTHS, TO(refine), 1, MESH_LEVELS, NULL, 0,
@@ -96,11 +99,12 @@ static const char *mesh_option(const struct options *o)
     const struct {
         bool given;
         const char *name;
-    } options[] = {
-        {o->size.count > 0, "--size"},    {o->origin.count > 0, "--origin"}, {o->like != NULL, "--like"},
-        {o->mask != NULL, "--mask"},      {o->labels != NULL, "--labels"},   {o->refine.count > 0, "--refine"},
-        {o->top >= 0, "--top"},           {!isnan(o->young), "--young"},     {!isnan(o->poisson), "--poisson"},
-        {!isnan(o->density), "--density"}};
+    } options[] = {{o->size.count > 0, "--size"},     {o->origin.count > 0, "--origin"},
+                   {o->like != NULL, "--like"},       {o->mask != NULL, "--mask"},
+                   {o->labels != NULL, "--labels"},   {o->smooth != NULL, "--smooth"},
+                   {o->refine.count > 0, "--refine"}, {o->top >= 0, "--top"},
+                   {!isnan(o->young), "--young"},     {!isnan(o->poisson), "--poisson"},
+                   {!isnan(o->density), "--density"}};
     for (size_t i = 0; i < sizeof options / sizeof *options; i++)
         if (options[i].given)
             return options[i].name;
@@ -144,6 +148,8 @@ static int check_options(const struct options *o, int32_t nodes[3], err *e)
 {
     if (o->names && !o->labels)
         return err_usage(e, "--names is for --labels VOLUME; expected both");
+    if (o->smooth && !o->labels)
+        return err_usage(e, "--smooth is for --labels VOLUME; expected both");
     if (check_refine(o, e))
         return -1;
     if (!o->nodes)
@@ -225,11 +231,18 @@ static int make_materials(const struct options *o, model *m, err *e)
     return o->materials ? read_materials(o, m, &usual, e) : materials_make(m, &usual, e);
 }
 
+static double labels_peak(const volume *v, const void *context)
+{
+    (void)context;
+    return volume_memory(v) + MESH_REGION_BYTES * (double)volume_count(v);
+}
+
 static int load_labels(const struct options *o, volume *labels, err *e)
 {
     if (!o->labels)
         return 0;
-    if (volume_load(labels, o->labels, &(volume_budget){.most = o->common.memory}, e))
+    const volume_budget budget = {.most = o->common.memory, .peak = o->smooth ? labels_peak : NULL};
+    if (volume_load(labels, o->labels, &budget, e))
         return -1;
     return o->names ? mesh_label_names(labels, o->names, e) : 0;
 }
@@ -239,7 +252,7 @@ static int make_volumes(const struct options *o, model *m, notes *warnings, err 
     volume labels = {0};
     int status = load_labels(o, &labels, e);
     if (!status)
-        status = mesh_label(m, o->labels ? &labels : NULL, o->labels, NULL, warnings, e);
+        status = mesh_label(m, o->labels ? &labels : NULL, o->labels, NULL, NULL, warnings, e);
     volume_free(&labels);
     return status;
 }
@@ -253,6 +266,8 @@ typedef struct graded {
     mesh_cells cells;
     mesh_graded mesh;
     mesh_moved moved;
+    mesh_smoothed smoothed;
+    int64_t *label; /* of tetrahedra, where borders are smooth; owned */
 } graded;
 
 static void graded_free(graded *g)
@@ -260,6 +275,7 @@ static void graded_free(graded *g)
     mesh_mask_free(&g->mask);
     mesh_cells_free(&g->cells);
     mesh_graded_free(&g->mesh);
+    free(g->label);
 }
 
 static double mask_peak(const volume *v, const void *context)
@@ -369,6 +385,15 @@ static double length_of(const double v[3])
     return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
 }
 
+static void say_smoothed(const tool *t, const mesh_smoothed *s)
+{
+    if (s->nodes)
+        tool_say(t, "%lld of %lld nodes of smooth borders lie on them, moved by at most %.3g mm",
+                 (long long)(s->nodes - s->off), (long long)s->nodes, 1e3 * s->largest);
+    if (s->off)
+        tool_say(t, "the others are at most %.3g mm beside them", 1e3 * s->farthest);
+}
+
 static void say_cells(const tool *t, const mesh_box *b, const graded *g)
 {
     int32_t least = MESH_UNITS(g->cells.levels);
@@ -386,6 +411,7 @@ static void say_cells(const tool *t, const mesh_box *b, const graded *g)
     if (g->moved.nodes)
         tool_say(t, "%lld of %lld nodes of the skin lie on the border of tissue, moved by at most %.3g mm",
                  (long long)(g->moved.nodes - g->moved.off), (long long)g->moved.nodes, 1e3 * g->moved.largest);
+    say_smoothed(t, &g->smoothed);
 }
 
 static int say_all(const tool *t, const model *m, notes *warnings, err *e)
@@ -418,11 +444,24 @@ static int from_nodes(const struct options *o, mesh_box *b, model *m, notes *war
     return mesh_fix(m, o->fix ? o->fix : opposite, b->nodes, e);
 }
 
+static int smooth(const struct options *o, graded *g, const mesh_box *b, const volume *labels, err *e)
+{
+    mesh_regions regions = {0};
+    g->label = mem_array(g->mesh.tets, sizeof *g->label, "labels", e);
+    int status = g->label ? mesh_regions_make(&regions, o->smooth, labels, o->labels, e) : -1;
+    if (!status)
+        status = mesh_walls_smooth(&g->mesh, b, &g->cells, &regions, labels, g->label, &g->smoothed, e);
+    mesh_regions_free(&regions);
+    return status;
+}
+
 static int mesh_of_cells(const struct options *o, graded *g, mesh_box *b, model *m, const volume *labels, err *e)
 {
     if (o->mask && mesh_mask_labels(&g->mask, o->mask, labels, o->labels, e))
         return -1;
-    return make_cells(o, g, b, e) || mesh_graded_add(&g->mesh, m, e) ? -1 : 0;
+    if (make_cells(o, g, b, e) || (o->smooth && smooth(o, g, b, labels, e)))
+        return -1;
+    return mesh_graded_add(&g->mesh, m, e);
 }
 
 static int from_cells(const struct options *o, graded *g, mesh_box *b, model *m, notes *warnings, err *e)
@@ -438,7 +477,7 @@ static int from_cells(const struct options *o, graded *g, mesh_box *b, model *m,
         const volume *of = o->labels ? &labels : NULL;
         const mesh_without without = {mesh_mask_leaves, &g->mask};
         status = mesh_of_cells(o, g, b, m, of, e) || make_materials(o, m, e) ||
-                 mesh_label(m, of, o->labels, &without, warnings, e);
+                 mesh_label(m, of, o->labels, g->label, &without, warnings, e);
     }
     volume_free(&labels);
     note_left(g, warnings);
@@ -459,7 +498,8 @@ static int make_mesh(const struct options *o, stage *s, graded *g, mesh_box *b, 
 {
     if (!o->nodes)
         return from_model(o, s, m, warnings, e);
-    return o->mask || o->refine.count ? from_cells(o, g, b, m, warnings, e) : from_nodes(o, b, m, warnings, e);
+    return o->mask || o->smooth || o->refine.count ? from_cells(o, g, b, m, warnings, e)
+                                                   : from_nodes(o, b, m, warnings, e);
 }
 
 static int run_tool(int argc, char **argv)

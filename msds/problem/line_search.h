@@ -1,7 +1,7 @@
-/* The line search of Newton's steps in the method tissue, for gcc and nvcc: which share of a step is tried next. It looks
- * at slopes, what is left times the step: `gain`, above 0, is what conjugate gradients saw at its beginning. A share is
- * taken where the slope there does not pull back by more than half of that; and not the first where a longer one pulled
- * back, while it still pulls on by more than half. Owns nothing.
+/* The line search of Newton's steps in the method tissue, for gcc and nvcc: which share of a step is tried next. It
+ * looks at slopes, what is left times the step: `gain`, above 0, is what conjugate gradients saw at its beginning. A
+ * share is taken where the slope there does not pull back by more than half of that; but not where a longer share
+ * pulled back, and this one still pulls on by more than half. Owns nothing.
  */
 #ifndef SINEW_LINE_SEARCH_H
 #define SINEW_LINE_SEARCH_H

@@ -3,8 +3,8 @@
  *
  * F has two columns, 3 numbers each, one after the other: what the unit vectors t1, t2 of the plane at rest become. The
  * membrane is Saint Venant's and Kirchhoff's of a material that keeps its volume: with E = (F^T F - 1)/2 and Young's
- * modulus times thickness k, S = 2/3 k tr E + 2/3 k E + S0; S and E are their elements 11, 22 and 12. S0 is a prestress.
- * Owns nothing.
+ * modulus times thickness k, S = 2/3 k (tr E 1 + E) + S0. Of S and E there are the elements 11, 22 and 12. S0 is a
+ * prestress. Owns nothing.
  */
 #ifndef SINEW_WALL_H
 #define SINEW_WALL_H
@@ -78,20 +78,19 @@ STABLE_FUNCTION void wall_tangent(const stable_number f[6], const stable_number 
 STABLE_FUNCTION void wall_follow(const stable_number edge[6], const stable_number way[9], stable_number p,
                                  stable_number to[9])
 {
-    stable_number across[3], by[6], sum[3], a[3], b[3], turned[3];
+    stable_number opposite[3][3], by[6], sum[3], a[3], b[3], turned[3]; /* opposite: edges, as they turn */
     for (int i = 0; i < 3; i++) {
         by[i] = way[3 + i] - way[i];
         by[3 + i] = way[6 + i] - way[i];
         sum[i] = way[i] + way[3 + i] + way[6 + i];
-        across[i] = edge[3 + i] - edge[i];
+        opposite[0][i] = edge[3 + i] - edge[i];
+        opposite[1][i] = -edge[3 + i];
+        opposite[2][i] = edge[i];
     }
     wall_cross(by, edge + 3, a);
     wall_cross(edge, by + 3, b);
     for (int c = 0; c < 3; c++) {
-        stable_number opposite[3];
-        for (int i = 0; i < 3; i++)
-            opposite[i] = c == 0 ? across[i] : c == 1 ? -edge[3 + i] : edge[i];
-        wall_cross(opposite, sum, turned);
+        wall_cross(opposite[c], sum, turned);
         for (int i = 0; i < 3; i++)
             to[3 * c + i] = p / 12 * (a[i] + b[i] - turned[i]);
     }

@@ -11,14 +11,16 @@ rows() {
     sinew export -f model --text "$T/m" | awk -v name="$1" '
         /^[a-z]/ { on = 0 } on { print } $1 == "array" && $2 == name { on = 1 }'
 }
-# volume: of all tetrahedra in $T/m, mm3.
+# volume [NUMBER]: of all tetrahedra in $T/m, or of those of one volume, mm3.
 volume() {
     {
+        rows element.volume
         rows node.position
         echo
         rows element.node
-    } | awk 'NF == 3 { for (a = 1; a <= 3; a++) x[NR - 1, a] = $a }
-        NF == 4 {
+    } | awk -v only="$1" 'BEGIN { nodes = 0 } NF == 1 { of[ofs++] = $1 }
+        NF == 3 { for (a = 1; a <= 3; a++) x[nodes, a] = $a; nodes++ }
+        NF == 4 && (only == "" || of[tets++] == only) {
             for (c = 1; c < 4; c++) for (a = 1; a <= 3; a++) e[c, a] = x[$(c + 1), a] - x[$1, a]
             sum += (e[1, 1] * (e[2, 2] * e[3, 3] - e[2, 3] * e[3, 2]) - e[1, 2] * (e[2, 1] * e[3, 3] - e[2, 3] * e[3, 1]) \
                 + e[1, 3] * (e[2, 1] * e[3, 2] - e[2, 2] * e[3, 1])) / 6
@@ -146,6 +148,49 @@ us-surface -q -i 40 --level 40 "$T/grey.nrrd" >"$T/skin.obj" 2>/dev/null || prin
 check "sinew bind binds to it" sh -c "sinew bind -q --unit mm '$T/skin.obj' <'$T/m' >'$T/bound'"
 check "sinew render draws it" sinew render -q --size 80x60 -o "$T/m.png" "$T/m"
 
+# ---- smooth borders of labels
+awk -v what=labels -f samples/arm.awk >"$T/arm.nrrd"
+arm() { # OPTIONS: a vein (volume 1) and an artery
+    mesh --nodes 33x11x17 --like "$T/arm.nrrd" --labels "$T/arm.nrrd" --names 1=tissue,2=vein,3=artery,4=bone "$@"
+}
+# wall: how far the nodes between the vein and others are from its ellipse, from its middle, in the mean and at most, mm
+wall() {
+    {
+        rows node.position
+        echo
+        rows element.node
+        echo
+        rows element.volume
+    } | awk 'BEGIN { n = 0 } !NF { part++ } part == 0 && NF { x[n] = 1e3 * $1; z[n++] = 1e3 * $3 } part == 1 && NF { t[m++] = $0 }
+        part == 2 && NF { c = split(t[i++], of); for (k = 1; k <= c; k++) has[of[k], $1 == 1] = 1 }
+        END {
+            for (k = 0; k < n; k++) if ((k, 0) in has && (k, 1) in has) {
+                d = sqrt((x[k] + 7) ^ 2 + (z[k] + 13) ^ 2) * (1 - 1 / sqrt(((x[k] + 7) / 5) ^ 2 + ((z[k] + 13) / 3.4) ^ 2))
+                d = d < 0 ? -d : d
+                sum += d; count++; if (d > most) most = d
+            }
+            printf "%.3f %.3f", sum / count, most }'
+}
+arm
+read -r before before_most <<EOF
+$(wall)
+EOF
+arm --smooth vein,artery
+read -r mean most <<EOF
+$(wall)
+EOF
+below "$most" .5 "all nodes of a vein's wall are half a voxel from its ellipse, at most"
+below "$mean" "$(awk -v mean="$before" 'BEGIN { print mean / 2 }')" "in the mean less than half as far as without, $before mm"
+below 1 "$before_most" "which is more than a voxel at most"
+near "$(volume)" 128000 1e-9 "the mesh still fills the box"
+cp "$T/m" "$T/a"
+arm --smooth 2,3
+check "by numbers: the same" sinew diff -q "$T/a" "$T/m"
+msds-mesh --nodes 9x5x7 --like "$T/label.nrrd" --labels "$T/label.nrrd" --mask air:gel,air:0 --smooth vein --refine 8mm -o "$T/m" 2>"$T/said"
+check "it says how many nodes are there" grep -Eq '^msds-mesh: ([0-9]+) of \1 nodes of smooth borders lie on them, moved by at most [0-9.]+ mm$' "$T/said"
+near "$(volume)" $under .02 "with a mask, and halved cells"
+near "$(volume 1)" $((16 * 28)) .15 "the vein keeps its volume, about"
+
 # ---- what is refused
 no() { # STATUS PATTERN OPTIONS...
     status=$1 pattern=$2
@@ -162,6 +207,10 @@ no 2 "--mask: above: stands twice" --like "$T/grey.nrrd" --mask above:1,above:2
 no 2 "--mask is for --like VOLUME" --size 1,1,1 --mask sector
 no 2 "--mask of labels is for --labels VOLUME" --like "$T/grey.nrrd" --mask air:0
 no 2 "--mask: unknown label 'gul'; did you mean 'gel'" --like "$T/label.nrrd" --labels "$T/label.nrrd" --mask air:gul
+no 2 "--smooth is for --labels VOLUME" --like "$T/grey.nrrd" --smooth vein
+no 2 "--smooth: unknown label 'vain'; did you mean 'vein'" --like "$T/label.nrrd" --labels "$T/label.nrrd" --smooth vain
+no 2 "--smooth: 'vein' stands twice" --like "$T/label.nrrd" --labels "$T/label.nrrd" --smooth 2,vein
+no 1 "$T/label.nrrd: .*memory" --like "$T/grey.nrrd" --labels "$T/label.nrrd" --smooth vein --memory 20kB
 no 1 "--mask: no voxel is tissue" --like "$T/label.nrrd" --labels "$T/label.nrrd" --mask tissue:7
 no 1 "$T/grey.nrrd: .*memory" --like "$T/grey.nrrd" --mask sector --memory 40kB
 no 2 "--around is for --refine" --size 1,1,1 --around 0,0,0

@@ -1,7 +1,7 @@
 /* Any line as msds-mesh's --names and any bytes after it as the image of --labels (NRRD, without its first line): every
  * element has a volume that there is, whose names differ; or one error with a text.
  */
-// needs: msds/mesh/mesh_labels.c msds/mesh/mesh_tets.c
+// needs: msds/mesh/mesh_labels.c msds/mesh/mesh_chosen.c msds/mesh/mesh_tets.c
 #include "model/materials.h"
 #include "msds/mesh/mesh_labels.h"
 #include "msds/mesh/mesh_tets.h"
@@ -32,7 +32,8 @@ static void label(volume *labels, const char *names)
     const mesh_box box = {{3, 3, 3}, {0, 0, 0}, {{.004, 0, 0}, {0, .004, 0}, {0, 0, .004}}};
     if (mesh_box_add(&m, &box, &e) || materials_make(&m, &of, &e))
         abort();
-    int status = (*names ? mesh_label_names(labels, names, &e) : 0) || mesh_label(&m, labels, "fuzz", NULL, NULL, &e);
+    int status =
+        (*names ? mesh_label_names(labels, names, &e) : 0) || mesh_label(&m, labels, "fuzz", NULL, NULL, NULL, &e);
     if (status != (e.text[0] != '\0'))
         abort();
     if (!status)

@@ -1,5 +1,6 @@
 // needs: attach/rigid.c msds/mesh/mesh_fix.c msds/mesh/mesh_sides.c msds/mesh/mesh_around.c msds/mesh/mesh_graded.c
 // needs: msds/mesh/mesh_keys.c msds/mesh/mesh_cells.c msds/mesh/mesh_tets.c msds/mesh/mesh_labels.c
+// needs: msds/mesh/mesh_chosen.c
 // needs: tled/problem/script.c tled/problem/script_surface.c
 // needs: tled/problem/script_nodes.c
 // needs: tled/problem/script_read.c common/inspect/info_key.c common/inspect/info_quality.c common/inspect/info_stats.c
@@ -71,7 +72,8 @@ static void fix(const char *text)
     err e = {0};
     material of = materials_fallback();
     const mesh_box box = {{2, 2, 3}, {0, 0, 0}, {{.004, 0, 0}, {0, .004, 0}, {0, 0, .004}}};
-    must(!mesh_box_add(&m, &box, &e) && !materials_make(&m, &of, &e) && !mesh_label(&m, NULL, "fuzz", NULL, NULL, &e));
+    must(!mesh_box_add(&m, &box, &e) && !materials_make(&m, &of, &e) &&
+         !mesh_label(&m, NULL, "fuzz", NULL, NULL, NULL, &e));
     int status = mesh_fix(&m, text, box.nodes, &e);
     must((status != 0) == (*e.text != '\0'));
     must(status || (mesh_fixed(&m) >= 0 && mesh_fixed(&m) <= model_count(&m, "node")));

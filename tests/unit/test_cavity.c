@@ -1,6 +1,6 @@
 /* Cavities (msds/problem/cavity.h) in the method tissue: their walls; Lame's tube; a tube that is all membrane; the
- * pressure at which a long ring buckles; rest under pressure; flow that is throttled; and the same bytes. Walls that meet
- * and part: tests/cli/cavity.t.
+ * pressure at which a long ring buckles; rest under pressure; flow that is throttled; and the same bytes. Walls that
+ * meet and part: tests/cli/cavity.t.
  */
 // needs: msds/mesh/mesh_tets.c msds/problem/*.c msds/cpu/*.c
 #include "msds_tube.h"
@@ -157,8 +157,8 @@ static void test_lame(void)
     end(&r);
 }
 
-/* A wall of its own in tissue that is next to nothing: p R/T = strain of the perimeter, T its stiffness, as its ends are
- * free. */
+/* A wall of its own in tissue that is next to nothing: its perimeter is strained by p R/T, T its stiffness, as its ends
+ * are free. */
 static void test_membrane(void)
 {
     const tube t = {48, 3, 3, 4, .005, .003, .01, 0, 10, .3};

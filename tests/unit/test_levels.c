@@ -4,7 +4,7 @@
  * that cycles through them converge on a graded mesh as on a lattice.
  */
 // needs: msds/mesh/mesh_keys.c msds/mesh/mesh_cells.c msds/mesh/mesh_graded.c msds/mesh/mesh_refine.c
-// needs: msds/mesh/mesh_mask.c msds/mesh/mesh_runs.c
+// needs: msds/mesh/mesh_mask.c msds/mesh/mesh_runs.c msds/mesh/mesh_chosen.c
 // needs: msds/mesh/mesh_tets.c msds/problem/problem.c msds/problem/springs.c msds/problem/sell.c msds/cpu/lanes.c
 // needs: msds/cpu/lanes_loops.c msds/cpu/contacts.c msds/cpu/grips.c
 // needs: msds/problem/stiffness.c msds/cpu/cg.c msds/cuda/levels.c msds/cuda/parts.c

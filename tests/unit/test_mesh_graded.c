@@ -4,7 +4,7 @@
  */
 // needs: msds/mesh/mesh_tets.c msds/mesh/mesh_keys.c msds/mesh/mesh_cells.c msds/mesh/mesh_graded.c
 // needs: msds/mesh/mesh_refine.c msds/mesh/mesh_mask.c msds/mesh/mesh_runs.c msds/mesh/mesh_around.c
-// needs: msds/mesh/mesh_sides.c msds/mesh/mesh_fix.c msds/problem/*.c msds/cpu/*.c
+// needs: msds/mesh/mesh_chosen.c msds/mesh/mesh_sides.c msds/mesh/mesh_fix.c msds/problem/*.c msds/cpu/*.c
 #include "mesh_look.h"
 #include "msds_block.h"
 

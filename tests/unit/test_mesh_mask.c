@@ -3,7 +3,7 @@
  */
 // needs: msds/mesh/mesh_tets.c msds/mesh/mesh_keys.c msds/mesh/mesh_cells.c msds/mesh/mesh_graded.c
 // needs: msds/mesh/mesh_refine.c msds/mesh/mesh_mask.c msds/mesh/mesh_runs.c msds/mesh/mesh_border.c
-// needs: msds/mesh/mesh_warp.c msds/mesh/mesh_around.c
+// needs: msds/mesh/mesh_warp.c msds/mesh/mesh_around.c msds/mesh/mesh_way.c msds/mesh/mesh_chosen.c
 #include "mesh_look.h"
 
 #include "base/mem.h"
