@@ -157,7 +157,7 @@ scanned() {
     [ ! -d "$work/scan" ] || return 0
     head=
     [ ! -d "$data/ultrasound/fetal-head" ] || head=$data/ultrasound/fetal-head
-    IMAGES=24 quietly samples/scan "$work/scan" ${head:+"$head"}
+    IMAGES=24 LUMEN=solid quietly samples/scan "$work/scan" ${head:+"$head"}
 }
 
 # heard COMMAND...: what it says on standard error is in $work/said, and is seen where it fails.
