@@ -242,7 +242,7 @@ static void begin_case(console *c, int index, bool replay)
     c->pull_count = 0;
     c->began = clock_now();
     c->has_compute = c->has_slice = false;
-    snprintf(c->method, sizeof c->method, "msds");
+    snprintf(c->method, sizeof c->method, "tissue");
     atomic_store(&c->colour, COLOURING_OWN);
     console_begin_showing(c);
 }

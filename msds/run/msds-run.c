@@ -89,7 +89,8 @@ static int run(session *s, err *e)
 
 static int run_tool(int argc, char **argv)
 {
-    struct options o = {.iterations = 20,
+    struct options o = {.method = METHOD_TISSUE,
+                        .iterations = 20,
                         .rate = 60,
                         .dt = .01,
                         .damping = .1,

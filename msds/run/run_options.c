@@ -7,7 +7,7 @@ static const opt option_list[] = {
     {OPT_NUMERICS, 'd', "device", "auto|cuda|cpu", OPT_CHOICE, TO(device), 0, 0, "auto|cuda|cpu", OPT_OUTPUT,
      "auto takes a CUDA card that works [default auto]"},
     {OPT_NUMERICS, 0, "method", METHODS_CHOICES, OPT_CHOICE, TO(method), 0, 0, METHODS_CHOICES, OPT_OUTPUT,
-     "springs, linear finite elements, or large strains [default msds]"},
+     "springs, linear finite elements, or large strains [default tissue]"},
     {OPT_NUMERICS, 0, "exact", NULL, OPT_FLAG, TO(exact), 0, 0, NULL, 0,
      "fem: solve to a relative residual of 1e-6, as --method exact"},
     {OPT_NUMERICS, 0, "warp", NULL, OPT_FLAG, TO(warp), 0, 0, NULL, 0,

@@ -15,7 +15,9 @@ press 10 >"$T/press.tum"
 head -n 4 "$T/press.tum" >"$T/four.tum"
 sed -n 5p "$T/press.tum" >"$T/fifth.tum"
 
-check "springs" msds-run --probe sphere:2cm --poses "$T/press.tum" -o "$T/msds.sinew" <"$T/block.sinew"
+check "large strains, if no method is named" msds-run -v --probe sphere:2cm --poses "$T/press.tum" -o "$T/msds.sinew" <"$T/block.sinew"
+is "$(awk '$3 == "tissue" { rows++ } END { print rows + 0 }' "$T/stderr") $(grep -c 'stable step' "$T/stderr")" "10 0" "in each frame; nothing is said of springs"
+check "springs" msds-run --method msds --probe sphere:2cm --poses "$T/press.tum" -o "$T/msds.sinew" <"$T/block.sinew"
 is "$(grep -c 'stable step' "$T/stderr")" 1 "says the stable step"
 is "$(grep -c 'inertia is' "$T/stderr")" 1 "says by what inertia grew"
 is "$(sinew info --get frames "$T/msds.sinew")" 10 "a frame a pose"
@@ -66,7 +68,7 @@ is "$(awk '$3 == "fem" { at = $6 + 0 < 1e-5 } END { print at + 0 }' "$T/stderr")
 
 # Methods change between poses, and the state carries over.
 { sed -n 1,4p "$T/press.tum"; echo 'method fem'; sed -n 5,7p "$T/press.tum"; echo 'method msds'; sed -n 8,10p "$T/press.tum"; } >"$T/both.tum"
-check "methods change in the stream" msds-run -v --exact --probe sphere:2cm --poses "$T/both.tum" -o "$T/both.sinew" <"$T/block.sinew"
+check "methods change in the stream" msds-run -v --method msds --exact --probe sphere:2cm --poses "$T/both.tum" -o "$T/both.sinew" <"$T/block.sinew"
 is "$(grep -c '  fem-exact  ' "$T/stderr") $(grep -c '  msds  ' "$T/stderr") $(grep -c 'time/s' "$T/stderr")" "3 7 1" "three frames by the FEM, seven by springs"
 is "$(grep -c 'springs: inertia is' "$T/stderr")" 1 "their inertia is said once"
 sed -n '5,$p' "$T/both.tum" >"$T/late.tum"
@@ -92,12 +94,12 @@ for method in 'exact:fem --exact' 'warp:fem --warp' 'exact-warp:fem --exact --wa
 done
 is "$(frames "$T/named.sinew" | grep -c '^frame ')" 4 "of four frames each"
 { cat "$T/four.tum"; echo 'method warp'; cat "$T/fifth.tum"; echo 'method exact-warp'; cat "$T/fifth.tum"; echo 'method fem'; cat "$T/fifth.tum"; echo 'method tissue'; cat "$T/fifth.tum"; echo 'method exact'; cat "$T/fifth.tum"; } >"$T/all.tum"
-check "all methods in one run" msds-run -v --probe sphere:2cm --poses "$T/all.tum" -o "$T/all.sinew" <"$T/block.sinew"
+check "all methods in one run" msds-run -v --method msds --probe sphere:2cm --poses "$T/all.tum" -o "$T/all.sinew" <"$T/block.sinew"
 is "$(awk '/time\/s/ { on = 1; next } on && NF == 8 { printf "%s ", $3 }' "$T/stderr")" "msds msds msds msds warp exact-warp fem tissue fem-exact " "each frame by its own"
 echo 'method wrap' >"$T/wrap.tum"
 fails 1 "a method that is none" "wrap.tum:1: unknown method 'wrap'; did you mean 'warp'\?" msds-run --poses "$T/wrap.tum" <"$T/block.sinew"
 
-check "compares" msds-run --compare --exact --spring-scale auto --probe sphere:2cm --poses "$T/press.tum" -o /dev/null <"$T/block.sinew"
+check "compares" msds-run --method msds --compare --exact --spring-scale auto --probe sphere:2cm --poses "$T/press.tum" -o /dev/null <"$T/block.sinew"
 is "$(awk '/time\/s/ { on = NF; next } on && NF == on { rows++ } END { print on, rows + 0 }' "$T/stderr")" "11 10" "a difference a frame"
 is "$(grep -Ec '^msds-run: 10 poses, to [0-9.]+ s: largest displacement [0-9.]+ mm, at [0-9.]+ s; largest force on the probe [0-9.]+ N, from [0-9]+ nodes, at [0-9.]+ s$' "$T/stderr")" 1 "and the end"
 
@@ -170,7 +172,7 @@ else
 fi
 
 # Physical masses: substeps, or a refusal.
-check "physical masses" msds-run --mass lumped --dt 1e-4 --iterations 5 --probe sphere:2cm --poses "$T/first.tum" -o /dev/null <"$T/block.sinew"
+check "physical masses" msds-run --method msds --mass lumped --dt 1e-4 --iterations 5 --probe sphere:2cm --poses "$T/first.tum" -o /dev/null <"$T/block.sinew"
 is "$(grep -c 'each step is cut into' "$T/stderr")" 1 "substeps are said"
 fails 1 "a step past all substeps" 'times the stable step; expected' msds-run --mass lumped --dt 10 --poses "$T/first.tum" <"$T/block.sinew"
 
