@@ -127,11 +127,20 @@ static int read_list(cavities *c, what w, const char *text, bool add, const mode
     return 0;
 }
 
+static int check_tissue(const cavities *c, const model *m, err *e)
+{
+    const model_array *a = model_find(m, "element.volume");
+    for (int64_t i = 0; a && i < a->rows; i++)
+        if (cavity_of(c->list, c->count, a->i32[i]) < 0)
+            return 0;
+    return err_option(e, "--cavity", "all tetrahedra are of cavities; expected others, which are pressed");
+}
+
 int cavities_read(cavities *c, const cavities_said *said, const model *m, err *e)
 {
     *c = (cavities){.count = 0};
     return read_list(c, PRESSURE, said->pressure, true, m, e) || read_list(c, OUTFLOW, said->outflow, false, m, e) ||
-                   read_list(c, WALL, said->wall, false, m, e)
+                   read_list(c, WALL, said->wall, false, m, e) || (c->count && check_tissue(c, m, e))
                ? -1
                : 0;
 }

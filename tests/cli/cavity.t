@@ -96,6 +96,7 @@ refuses "the same twice" "volume 'vein' is named twice" --cavity vein=1,vein=2
 refuses "a wall of no cavity" "volume 'artery' is no cavity; expected --cavity artery=PRESSURE" --cavity vein=1 --wall artery=400
 refuses "a wall below 0" "'vein=-1'; expected from 0 to 1e9 N/m" --cavity vein=1 --wall vein=-1
 refuses "a resistance that is not a number" "'vein=nan'; expected from 0 to 1e15 Pa s/m3" --cavity vein=1 --outflow vein=nan
+refuses "nothing but cavities" 'all tetrahedra are of cavities' --cavity tissue=1,vein=1,artery=1,bone=1
 refuses "another method" 'with --method fem; expected --method tissue' --cavity vein=1 --method fem
 { head -n 2 "$T/some.tum"; echo 'method fem'; tail -n 2 "$T/some.tum"; } >"$T/fem.tum"
 fails 1 "another method on the way" 'fem.tum:3: method fem with --cavity; expected method tissue' on --cavity vein=1 --poses "$T/fem.tum"
