@@ -314,6 +314,7 @@ static int64_t find_step(tissue *t, int64_t most)
             if (want > may) {
                 meet(t, may);
                 free = expand(t);
+                beta = 0;
                 count++;
             }
         }
