@@ -44,7 +44,10 @@ enum { /* as bits */
 };
 
 /* All executors have these features, so messages about the choice do not name them. */
-enum { EXECUTOR_USUAL = EXECUTOR_MIXTURES | EXECUTOR_CURVES | EXECUTOR_FIBRES | EXECUTOR_SERIES | EXECUTOR_CUTS };
+enum {
+    EXECUTOR_USUAL =
+        EXECUTOR_MIXTURES | EXECUTOR_CURVES | EXECUTOR_FIBRES | EXECUTOR_SERIES | EXECUTOR_CUTS | EXECUTOR_TISSUE
+};
 
 typedef struct executor {
     const char *device; /* "cpu" or "cuda", as the user says it */

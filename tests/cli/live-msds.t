@@ -121,7 +121,7 @@ is "$(grep -c 'skipped, and others like it are' "$T/said")" "$(grep -c 'warning:
     "what is wrong is told with its line"
 is "$(sed -n 's/.*; \([0-9]* controls; [0-9]* lines skipped; writers went away: [0-9]*\)$/\1/p' "$T/said")" \
     "8 controls; 14 lines skipped; writers went away: 3" "and counted"
-is "$(sed -n 's/^frame.*path=//p' "$T/record" | uniq | tr '\n' ' ')" "msds fem exact warp exact-warp tissue msds " "each method was used"
+is "$(sed -n 's/^frame.*path=//p' "$T/record" | uniq | tr '\n' ' ')" "tissue fem exact warp exact-warp tissue msds " "each method was used"
 is "$(awk '/^set probe/ { print $3 }' "$T/record" | tr '\n' ' ')" "sphere:2cm linear:3cm,1cm " "settings are recorded"
 cp "$T/record" "$T/kept"
 same "a session" --probe sphere:2cm
@@ -177,7 +177,7 @@ rm -f "$T/record"
     echo 'set gravity 0,0,0'
     until_line '^set gravity 0,0,0' "$T/record"
     until_line "^frame $(($(frames "$T/record") + 3)) " "$T/record"
-) | msds-run --live --text --record "$T/record" --control - >"$T/live" 2>"$T/said"
+) | msds-run --live --method msds --text --record "$T/record" --control - >"$T/live" 2>"$T/said"
 is "$?" 0 "without poses frames begin at once"
 check "a pose without --poses is told" grep -q 'stdin:2: a pose among the controls, when frames have begun without one; expected --poses; the line is skipped' "$T/said"
 is "$(sed -n 's/^frame.*path=//p' "$T/record" | uniq | tr '\n' ' ')" "msds rest msds " "tissue that diverges is put back to rest, and goes on"
