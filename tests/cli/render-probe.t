@@ -93,8 +93,8 @@ differ "and something" all whole
 # ---- A probe that goes through and is out again at each pose has touched.
 printf '%s\n' '0 -.02 .04 .036 1 0 0 0' '.2 .1 .04 .036 1 0 0 0' >"$T/through.tum"
 check "a probe that goes through an edge between two poses" msds-run -d cpu --method msds --probe sphere:1cm --poses "$T/through.tum" -o "$T/run.sinew" <"$T/tets.sinew"
-is "$(grep -c 'touches nothing' "$T/stderr"):$(sinew info --get node.displacement.max "$T/run.sinew" | awk '{ print ($1 > 1e-3) }')" 0:1 \
-    "is not said to touch nothing, as springs moved by a millimetre"
+is "$(grep -c 'touches nothing' "$T/stderr"):$(sinew info --get node.displacement.max "$T/run.sinew" | awk '{ print ($1 > 5e-4) }')" 0:1 \
+    "is not said to touch nothing, as springs moved by most of a millimetre"
 sed 's/[.]036/.06/' "$T/through.tum" >"$T/above.tum"
 fails 0 "one that goes above it is" 'the probe touches nothing in any frame \(2 in all\)' msds-run -d cpu --probe sphere:1cm --poses "$T/above.tum" -o /dev/null <"$T/tets.sinew"
 check "finite elements are swept too" msds-run -d cpu --method fem --probe sphere:1cm --poses "$T/through.tum" -o "$T/run.sinew" <"$T/tets.sinew"
