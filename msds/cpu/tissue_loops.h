@@ -18,7 +18,7 @@ INLINE v8 stable_larger(v8 a, v8 b)
 
 INLINE v8 stable_root(v8 a)
 {
-    v8 to;
+    v8 to = a;
     for (int l = 0; l < LANES; l++)
         to[l] = __builtin_sqrtf(a[l]);
     return to;
@@ -176,37 +176,43 @@ INLINE void measure_lumen(const tissue_mesh *m, int64_t i, const lanes_field *u)
     store(m->swollen + i * LANES, load(m->volume + i * LANES) * stable_swelling(g, c));
 }
 
+/* Takes what acts on corners that lie on a wall off them, and adds what keeps walls from crossing: b. */
+INLINE void push_lumen(const tissue_mesh *m, int64_t i, const v8 q[9], const v8 cofactors[9], v8 pressure)
+{
+    const v8 push = -load(m->volume + i * LANES) * pressure;
+    for (int a = 0; a < 3; a++) {
+        v8 sum = {0};
+        for (int k = 0; k < 4; k++) {
+            float *at = m->force + (3 * k + a) * m->stride + i * LANES;
+            v8 own = {0};
+            for (int d = 0; d < 3 && k; d++)
+                own += push * cofactors[3 * a + d] * q[3 * (k - 1) + d];
+            sum += own;
+            store(at, load(at) * load(m->within + (4 * (i - m->lumens) + k) * LANES) + own);
+        }
+        float *first = m->force + a * m->stride + i * LANES;
+        store(first, load(first) - sum);
+    }
+}
+
 /* What keeps walls from crossing acts on all corners; what keeps a cavity's elements in shape acts on nodes within it
  * alone, so that these go along with the walls, but do not hold them. */
 INLINE void stress_lumen(const tissue_mesh *m, int64_t i)
 {
-    v8 q[9], g[9], c[9], f[9], stress[9];
-    const stable_barrier none = {{0}, {0}};
-    const v8 mu = load(m->mu + i * LANES), volume = load(m->volume + i * LANES);
-    float *to = m->force + i * LANES;
+    v8 q[9], g[9], c[9], stress[9];
+    const v8 nothing = {0}, thin = nothing + (float)TISSUE_WALLS_THIN, mu = load(m->mu + i * LANES);
+    const stable_barrier none = {nothing, nothing};
     take_gradients(m, i, q);
     take_g(m, i, g);
     stable_cofactors(g, c);
-    const stable_barrier b =
-        stable_meeting(stable_swelling(g, c), (v8){0} + (float)TISSUE_WALLS_THIN, load(m->kappa + i * LANES));
-    const stable_state at = stable_stress_of(g, mu, mu, (v8){0}, &none, stress);
-    put_law(m, i, at.a, at.b, (v8){0}, at.r + b.stiffness);
+    const stable_barrier b = stable_meeting(stable_swelling(g, c), thin, load(m->kappa + i * LANES));
+    const stable_state at = stable_stress_of(g, mu, mu, nothing, &none, stress);
+    put_law(m, i, at.a, at.b, nothing, at.r + b.stiffness);
     put_forces(m, i, q, stress);
-    for (int k = 0; k < 9; k++)
-        f[k] = g[k] + (k % 4 ? 0.f : 1.f);
-    stable_cofactors(f, c);
-    for (int a = 0; a < 3; a++) {
-        v8 sum = {0};
-        for (int k = 0; k < 4; k++) {
-            float *at_corner = to + (3 * k + a) * m->stride;
-            v8 push = {0};
-            for (int d = 0; d < 3 && k; d++)
-                push -= volume * b.pressure * c[3 * a + d] * q[3 * (k - 1) + d];
-            sum += push;
-            store(at_corner, load(at_corner) * load(m->within + (4 * (i - m->lumens) + k) * LANES) + push);
-        }
-        store(to + a * m->stride, load(to + a * m->stride) - sum);
-    }
+    for (int k = 0; k < 9; k += 4)
+        g[k] += 1;
+    stable_cofactors(g, c);
+    push_lumen(m, i, q, c, b.pressure);
 }
 
 /* What a cavity's content gives way by is what its walls do. */
@@ -400,7 +406,11 @@ static void tissue_tangent(const tissue_mesh *m, const lanes_field *way, int64_t
 
 static void tissue_prestress(const tissue_mesh *m, const lanes_field *of, int64_t from, int64_t to)
 {
-    TISSUE_GROUPS(prestress_group(m, i, of), prestress_group(m, i, of), (void)0, prestress_wall(m, i, of));
+    for (int64_t i = from; i < to; i++)
+        if (i >= m->walls)
+            prestress_wall(m, i, of);
+        else if (i < m->lumens)
+            prestress_group(m, i, of);
 }
 
 /* The lanes of a slot that have a summand. */

@@ -340,8 +340,8 @@ static void test_products(void)
     make_block(&b, 15, false, false, .04, .0006, .3);
     const int64_t count = b.c.count;
     double *force = mem_array(5 * count, sizeof *force, "test", &e);
-    double *by_dense = force + count, *by_solves = by_dense + count, *soft = by_solves + count, *none = soft + count;
     tets_must(force && !compliance_begin(&b.x.compliance, &e), &e);
+    double *by_dense = force + count, *by_solves = by_dense + count, *soft = by_solves + count, *none = soft + count;
     for (int64_t i = 0; i < count; i++)
         force[i] = noise(&state) + .2;
     ok(b.x.compliance.dense, "%lld contacts have a dense compliance", (long long)count);
