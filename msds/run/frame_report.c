@@ -48,7 +48,7 @@ static void put_cavities(const session *s, bool heading, char *to, size_t size)
 
 static void say_heading(session *s)
 {
-    char row[1000], hollow[800];
+    char row[1200], hollow[800];
     put_cavities(s, true, hollow, sizeof hollow);
     snprintf(row, sizeof row, "%10s  %-10s  %7s  %9s  %9s  %6s%s  %8s%s", "time/s", "method", "pressed", "force/N",
              "residual", "solves", s->other ? "  other's/N   rms/rms   max/max" : "", "inverted", hollow);
@@ -76,7 +76,7 @@ static void find_peaks(session *s)
 void frame_report_row(session *s)
 {
     const msds_reading *reading = &s->reading;
-    char left[40] = "-", solves[40] = "-", other[100] = "", row[1000], hollow[800];
+    char left[40] = "-", solves[40] = "-", other[100] = "", row[1200], hollow[800];
     if (!isnan(reading->residual))
         snprintf(left, sizeof left, "%.3g", reading->residual);
     if (reading->solves)
