@@ -1,11 +1,10 @@
 #include "msds/cpu/contacts.h"
 
 #include "base/mem.h"
+#include "msds/problem/newton.h"
 
 #include <stdlib.h>
 #include <string.h>
-
-static const double near_by = .1, clinging = .02;
 
 typedef struct search {
     contacts *c;
@@ -57,9 +56,9 @@ static void consider(contacts *c, const lanes_springs *w, const msds_problem *p,
     at.depth = t.depth;
     memcpy(at.way, t.way, sizeof at.way);
     at.force = fmax(0, c->held[at.node]);
-    double slack = at.force > 0 ? clinging : 0;
+    double slack = at.force > 0 ? CONTACT_CLINGING : 0;
     if (rule == CONTACTS_NEAR)
-        slack = near_by;
+        slack = CONTACT_NEAR_BY;
     bool follows = rule == CONTACTS_NEAR && at.force > 0;
     if (!p->fixed[at.node] && (follows || at.depth > -slack * w->probe->shape.size))
         c->list[c->count++] = at;
@@ -70,7 +69,7 @@ static void look_for(contacts *c, const lanes *loops, lanes_springs *w, pool *th
 {
     search s = {c, loops, w};
     float reach = w->reach;
-    w->reach = (float)(w->probe->reach + 1.01 * near_by * w->probe->shape.size);
+    w->reach = (float)(w->probe->reach + 1.01 * CONTACT_NEAR_BY * w->probe->shape.size);
     pool_run(threads, w->s->count, SELL_CHUNK, search_work, &s);
     w->reach = reach;
 }

@@ -10,6 +10,7 @@
 #include "msds/cpu/exact_making.h"
 #include "msds/cpu/grips.h"
 #include "msds/cpu/tissue.h"
+#include "msds/problem/newton.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -22,9 +23,6 @@ enum { TURNS = 4, TURN = 3 };
 /* An exact frame is in equilibrium to this share of its load; a node may be missed in the probe by this share of
  * its size. */
 static const double exact_tolerance = 1e-6, missed = 1e-6;
-
-/* A frame of tissue ends at this residual: single precision gets little further. */
-static const double tissue_tolerance = 1e-6;
 
 typedef struct msds_state cpu_state;
 
@@ -359,7 +357,7 @@ static int step_tissue(cpu_state *s, int64_t count, err *e)
         find_contacts(s, NULL, s->p->options.penalty ? CONTACTS_PRESSED : CONTACTS_NEAR);
         count -= tissue_step(s->tissue, count);
         contacts_hold(&s->contacts, s->p);
-        if (s->tissue->residual < tissue_tolerance)
+        if (s->tissue->residual < NEWTON_TOLERANCE)
             break;
     }
     return 0;

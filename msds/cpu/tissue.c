@@ -6,6 +6,7 @@
 #include "msds/cpu/tissue_walls.h"
 #include "msds/cpu/tissue_work.h"
 #include "msds/problem/line_search.h"
+#include "msds/problem/newton.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -13,21 +14,8 @@
 
 enum { FIELDS = 6 };
 
-/* Conjugate gradients stop at this share of the square of what was left, so that Newton's next step begins from a new
- * tangent. */
-static const double forcing = .01;
-
-/* The length of a step along what is left: below 2 over the largest eigenvalue of the tangent times the inverse. */
-static const double fixed = .35;
-
-/* How far a node may go in a Newton step, in sides of a cell. */
-static const double stride = 2;
-
 /* The share of a step that is always tried. */
 static const double yielding = .02;
-
-/* A residual below which pressures are held for the next frame. */
-static const double balanced = .5;
 
 /* What of all nodes' sums are told. */
 enum { SUM_LEFT, SUM_LOAD, SUM_PULL, SUMS };
@@ -213,7 +201,7 @@ static double let_go(tissue *t, double off)
         pressed_add(&t->way, own, c, c->pull * (double)t->m.inverse[own]);
     }
     const double curvature = change_along(t);
-    return advance(t, curvature > 0 ? off / curvature : fixed);
+    return advance(t, curvature > 0 ? off / curvature : NEWTON_FIXED);
 }
 
 /* Holds a node on its plane. */
@@ -244,14 +232,14 @@ static double expand(tissue *t)
     keep_out(t, &t->way, 0);
     for (int64_t i = 0; i < t->pressed.c->count; i++) {
         contact *c = &t->pressed.c->list[i];
-        const double along = pressed_along(&t->way, own_of(t, c), c), most = -room_of(t, c) / fixed;
+        const double along = pressed_along(&t->way, own_of(t, c), c), most = -room_of(t, c) / NEWTON_FIXED;
         c->meets = !c->active && along < most;
         if (c->meets)
             pressed_add(&t->way, own_of(t, c), c, most - along);
     }
     const double curvature = change_along(t), along = dot(t, &t->left, &t->way);
-    const bool is_whole = !(curvature > 0) || fixed * curvature <= along;
-    const double free = advance(t, is_whole ? fixed : fmax(along, 0) / curvature);
+    const bool is_whole = !(curvature > 0) || NEWTON_FIXED * curvature <= along;
+    const double free = advance(t, is_whole ? NEWTON_FIXED : fmax(along, 0) / curvature);
     for (int64_t i = 0; i < t->pressed.c->count && is_whole; i++)
         if (t->pressed.c->list[i].meets)
             hold(t, &t->pressed.c->list[i]);
@@ -293,7 +281,7 @@ static void note_first(tissue *t)
 static int64_t find_step(tissue *t, int64_t most)
 {
     double free = begin_step(t), off = sum_off(t), beta = 0;
-    const double least = forcing * (free + off);
+    const double least = NEWTON_FORCING * (free + off);
     int64_t count = 1;
     note_first(t);
     for (; count < most && free + off > least; count++) {
@@ -306,7 +294,7 @@ static int64_t find_step(tissue *t, int64_t most)
             const double curvature = change_along(t), may = feasible(t);
             if (!(curvature > 0) && count > 1)
                 break;
-            const double want = curvature > 0 ? free / curvature : fixed, before = free;
+            const double want = curvature > 0 ? free / curvature : NEWTON_FIXED, before = free;
             free = advance(t, fmin(want, may));
             beta = free / before;
             if (!(curvature > 0))
@@ -374,7 +362,7 @@ static void spare_walls(tissue *t, double first)
 /* Goes along the step as far as that does not overshoot by much. */
 static void search(tissue *t)
 {
-    double share = fmin(1, stride * t->pressed.p->side / longest(t));
+    double share = fmin(1, NEWTON_STRIDE * t->pressed.p->side / longest(t));
     if (t->m.walls > t->m.lumens) {
         spare_walls(t, share);
         share = 1;
@@ -408,7 +396,7 @@ static void conclude(tissue *t)
 /* Holds pressures, but not of a state that is far from balance, where they mean nothing. */
 void tissue_begin(tissue *t, double elapsed)
 {
-    for (int64_t i = 0; i < t->m.points && t->residual < balanced; i++)
+    for (int64_t i = 0; i < t->m.points && t->residual < NEWTON_BALANCED; i++)
         t->m.held[i] = t->m.keep[i] * t->m.pressure[i];
     tissue_rest_fill(t, elapsed);
     find_left(t);

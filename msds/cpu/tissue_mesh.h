@@ -41,14 +41,15 @@ typedef struct tissue_mesh {
                        tissue_walls_brace leaves it */
     float *within;     /* (walls - lumens) x 4 x LANES: 1 for corners within a cavity, 0 on its wall */
     float *at_rest;    /* nodes: the same at rest; NULL where there are no cavities */
-    tissue_sums corners;    /* by nodes, into force */
-    tissue_sums swells;     /* by points, into swollen */
-    float *g;               /* groups x 9 x LANES: the displacement's derivatives */
-    float *law;             /* groups x STABLE_NUMBERS x LANES: what the tangent has there (stable.h) */
-    float *counted;         /* groups x LANES: how much of an element counts about points (stable.h) */
-    int64_t stride;         /* (groups + 1) x LANES; the last LANES are 0: */
-    float *force;           /* 12 x stride, N: components of corners, corner by corner */
-    float *swollen;         /* stride, m3: a quarter of what the volume changed by, as it counts */
+    tissue_sums corners; /* by nodes, into force */
+    tissue_sums swells;  /* by points, into swollen */
+    float *g;            /* groups x 9 x LANES: the displacement's derivatives */
+    float *law;          /* groups x STABLE_NUMBERS x LANES: what the tangent has there (stable.h) */
+    float *counted;      /* groups x LANES: how much of an element counts about points (stable.h) */
+    int64_t stride;      /* (groups + 1) x LANES; the last LANES are 0: */
+    float *force;        /* 12 x stride, N: components of corners, corner by corner */
+    float *swollen; /* stride, m3: what the volume changed by; of tissue a quarter of it, as it counts; of walls what
+                            they sweep along a way */
     float *held, *pressure; /* points, Pa */
     float *pressed;         /* points, Pa: what that changes by along a direction */
 } tissue_mesh;

@@ -3,11 +3,15 @@
 #include "base/mem.h"
 #include "msds/cpu/tissue_work.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 /* Conjugate gradients end at this share of the square of the load, or after so many. */
 static const double enough = 1e-8;
 enum { MOST = 2000 };
+
+/* What may be left then, so that tissue moves little at first. */
+static const double bearable = 1e-4;
 
 static void prestress_work(void *context, int64_t chunk, int64_t from, int64_t to)
 {
@@ -46,19 +50,25 @@ static void find_load(tissue *t)
 
 /* The step under the load. Elements keep what bulk stiffness they have of their own, so that they do not lock: any
  * stress in balance will do. */
-static void solve(tissue *t)
+static int solve(tissue *t, err *e)
 {
     double left = tissue_advance(t, 0), beta = 0;
-    const double least = enough * left;
+    const double first = left, least = enough * left;
     for (int i = 0; i < MOST && left > least; i++) {
         tissue_turn(t, beta);
         const double curvature = tissue_stiffness(t, &t->way);
         if (!(curvature > 0))
-            return;
+            break;
         const double before = left;
         left = tissue_advance(t, before / curvature);
         beta = left / before;
     }
+    return left <= bearable * first
+               ? 0
+               : err_set(e, NULL, 0,
+                         "no prestress balances the cavities: %.2g of their pressure is left; expected tissue "
+                         "that holds them, and fewer elements",
+                         sqrt(left / first));
 }
 
 int tissue_rest_make(tissue *t, err *e)
@@ -78,13 +88,14 @@ int tissue_rest_make(tissue *t, err *e)
     tissue_copy(t, &t->started, t->u);
     tissue_clear(t, t->u);
     find_load(t);
+    int failed = 0;
     if (any) {
-        solve(t);
+        failed = solve(t, e);
         t->m.prestress = made;
         tissue_groups(t, prestress_work);
     }
     tissue_copy(t, t->u, &t->started);
-    return 0;
+    return failed;
 }
 
 /* What a cavity loses of its volume presses on its walls by how long that takes: outflow times how fast. */

@@ -184,25 +184,30 @@ void tissue_walls_brace(tissue_mesh *m)
     }
 }
 
-/* Of the tissue about each cavity, the harmonic mean of the shear modulus: what is soft about it yields. */
+/* Of the tissue about each cavity, the harmonic mean of the shear modulus: what is soft about it yields. Of all tissue
+ * where nodes of its walls are those of another, too. */
 int tissue_walls_moduli(const msds_problem *p, const cavity_wall *walls, int64_t count, double *mu, double *hard,
                         err *e)
 {
     int32_t *about = mem_array(p->nodes, sizeof *about, "the solver", e); /* a node's cavity, from 1 */
-    double *room = mem_array(p->cavities + 1, sizeof *room, "the solver", e);
+    double *room = mem_array(p->cavities + 1, sizeof *room, "the solver", e), all = 0, softness = 0;
     for (int64_t i = 0; about && room && i < count; i++)
         for (int c = 0; c < 3; c++)
             about[walls[i].node[c]] = walls[i].cavity + 1;
     for (int64_t i = 0; about && room && i < 4 * p->elements; i++) {
         const simplex *s = &p->element[i / 4];
         const int32_t of = about[p->element_node[i]] - 1;
-        if (of >= 0 && cavity_of(p->cavity, p->cavities, p->volume[i / 4]) < 0) {
+        if (cavity_of(p->cavity, p->cavities, p->volume[i / 4]) >= 0)
+            continue;
+        all += s->volume;
+        softness += s->volume / s->mu;
+        if (of >= 0) {
             room[of] += s->volume;
             mu[of] += s->volume / s->mu;
         }
     }
     for (int c = 0; about && room && c < p->cavities; c++) {
-        const double own = room[c] > 0 ? room[c] / mu[c] : 1;
+        const double own = room[c] > 0 ? room[c] / mu[c] : all / softness;
         mu[c] = slack * own;
         hard[c] = meeting * own;
     }

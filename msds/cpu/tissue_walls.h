@@ -11,7 +11,7 @@
 
 struct lanes_field;
 
-/* From which share of its volume on an element of a cavity gets stiff: of that walls that meet leave a quarter. */
+/* Below this share of its volume an element of a cavity gets stiff. Where walls meet, about a quarter of it remains. */
 #define TISSUE_WALLS_THIN .1
 
 /* Triangles in place, and m->within; the mesh's arrays are made. -1 with e filled. */

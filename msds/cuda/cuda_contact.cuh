@@ -4,6 +4,7 @@
 #define SINEW_CUDA_CONTACT_CUH
 
 #include "msds/cuda/cuda_tissue.cuh"
+#include "msds/problem/newton.h"
 
 #define CHUNK_NODE(chunk) ((chunk)*GRID_THREADS + (int32_t)threadIdx.x)
 

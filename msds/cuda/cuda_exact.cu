@@ -15,7 +15,7 @@ enum {
 };
 
 /* msds_cpu.c's and contacts.c's; a search goes so far down at once, which single precision can do. */
-static const double missed = 1e-6, near_by = .1, sharper = 1e-2, search_depth = 1e-4;
+static const double missed = 1e-6, sharper = 1e-2, search_depth = 1e-4;
 
 static __device__ double sum_of(const tissue *t, tissue_part which, grid_scratch *s)
 {
@@ -54,7 +54,7 @@ static __device__ void find_contacts(const tissue *t, const tissue_frame *f, con
         x->active[n] = 0;
         if (!contact_candidate(t, f, n, single(u)))
             continue;
-        contact_consider(t, f, n, u, near_by, near_by, true);
+        contact_consider(t, f, n, u, CONTACT_NEAR_BY, CONTACT_NEAR_BY, true);
         x->active[n] = t->listed[n] && (t->contact[n].force > 0 || t->contact[n].depth > 0);
     }
     grid_barrier(t->arrived);

@@ -3,8 +3,6 @@
  */
 #include "msds/cuda/cuda_contact.cuh"
 
-static const double clinging = .02; /* contacts.c's */
-
 /* What the elements pull node n with at u. */
 template <int AHEAD> static __device__ inline float4 pulled_at(const tissue *t, int32_t n)
 {
@@ -54,7 +52,7 @@ static __device__ void find_contacts(const tissue *t, const tissue_frame *f, gri
             held = t->held[n] > 0;
             if (contact_candidate(t, f, n, u)) {
                 const double from[3] = {(double)u.x, (double)u.y, (double)u.z};
-                contact_consider(t, f, n, from, clinging, 0, false);
+                contact_consider(t, f, n, from, CONTACT_CLINGING, 0, false);
             }
             listed = t->listed[n] && t->contact[n].force > 0;
         }

@@ -5,6 +5,7 @@
 #include "msds/cuda/cuda_exact.cuh"
 #include "msds/cuda/cuda_newton.cuh"
 #include "msds/cuda/cuda_planes.cuh"
+#include "msds/problem/newton.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -17,9 +18,6 @@ extern "C" {
 #include "msds/cuda/msds_cuda.h"
 #include "msds/cuda/parts.h"
 }
-
-/* A node is looked for in the ball that holds the probe and so much more of its size: contacts.c's. */
-static const double near_by = .1;
 
 typedef struct msds_state cuda_state;
 
@@ -317,7 +315,7 @@ static tissue_frame frame_of(const cuda_state *s, const msds_plan *plan, int64_t
     for (int a = 0; a < 3; a++)
         f.centre[a] = (float)plan->probe.centre[a];
     f.reach = (float)(plan->probe.reach * (1 + 1e-6));
-    f.wide = (float)(plan->probe.reach + 1.01 * near_by * plan->probe.shape.size);
+    f.wide = (float)(plan->probe.reach + 1.01 * CONTACT_NEAR_BY * plan->probe.shape.size);
     f.dt = (float)plan->dt;
     f.damping = s->p->options.damping;
     f.count = (int32_t)count;

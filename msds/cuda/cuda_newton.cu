@@ -7,10 +7,6 @@
 #include "msds/cuda/cuda_newton_elements.cuh"
 #include "msds/problem/line_search.h"
 
-/* tissue.c's, where they are explained; tolerance is msds_cpu.c's, near_by and clinging are contacts.c's. */
-static const double forcing = .01, fixed = .35, stride = 2, balanced = .5, tolerance = 1e-6, near_by = .1,
-                    clinging = .02;
-
 /* What a phase works on. */
 typedef struct newton {
     const tissue *t;
@@ -142,9 +138,9 @@ static __device__ inline void mark_contact(const newton *k, int32_t n, float4 u)
     if (!contact_candidate(k->t, k->f, n, u))
         return;
     if (k->f->penalty)
-        contact_consider(k->t, k->f, n, from, clinging, 0, false);
+        contact_consider(k->t, k->f, n, from, CONTACT_CLINGING, 0, false);
     else
-        contact_consider(k->t, k->f, n, from, near_by, near_by, true);
+        contact_consider(k->t, k->f, n, from, CONTACT_NEAR_BY, CONTACT_NEAR_BY, true);
 }
 
 /* ---- products with the elements */
@@ -387,7 +383,7 @@ static __device__ inline void turn_node(const newton *k, int32_t n, float beta, 
     if (k->x->active[n])
         way = contact_add(c, way, -contact_along(c, way));
     if (expands && is_free_contact(k, n)) {
-        const double along = contact_along(c, way), most = -room_of(k, n) / fixed;
+        const double along = contact_along(c, way), most = -room_of(k, n) / NEWTON_FIXED;
         meets = along < most;
         if (meets)
             way = contact_add(c, way, most - along);
@@ -422,7 +418,7 @@ static __device__ balance let_go(const newton *k, double off)
     each(k->t->nodes, [&](int32_t n) { let_go_node(k, n); });
     end_phase(k);
     const double curvature = change_along(k, false);
-    return advance(k, curvature > 0 ? off / curvature : fixed, true, AFTER_NOTHING);
+    return advance(k, curvature > 0 ? off / curvature : NEWTON_FIXED, true, AFTER_NOTHING);
 }
 
 /* A step of fixed length along what is left, of which nodes that would go into the probe come to its surface, and are
@@ -431,15 +427,16 @@ static __device__ balance expand(const newton *k)
 {
     turn(k, 0, true);
     const double curvature = change_along(k, true), along = total(k, PART_ALONG);
-    const bool is_whole = !(curvature > 0) || fixed * curvature <= along;
-    return advance(k, is_whole ? fixed : fmax(along, 0.) / curvature, true, is_whole ? AFTER_HOLD : AFTER_NOTHING);
+    const bool is_whole = !(curvature > 0) || NEWTON_FIXED * curvature <= along;
+    const double alpha = is_whole ? NEWTON_FIXED : fmax(along, 0.) / curvature;
+    return advance(k, alpha, true, is_whole ? AFTER_HOLD : AFTER_NOTHING);
 }
 
 /* tissue.c's find_step; *work: moved's. */
 static __device__ int32_t find_step(const newton *k, int32_t most, double *work)
 {
     balance b = begin_step(k);
-    const double least = forcing * (b.free + b.off);
+    const double least = NEWTON_FORCING * (b.free + b.off);
     float beta = 0;
     int32_t count = 1;
     *work = k->f->touched ? total(k, PART_WORK) : 0;
@@ -453,7 +450,7 @@ static __device__ int32_t find_step(const newton *k, int32_t most, double *work)
         const double curvature = change_along(k, false), may = feasible(k);
         if (!(curvature > 0) && count > 1)
             break;
-        const double want = curvature > 0 ? b.free / curvature : fixed, before = b.free;
+        const double want = curvature > 0 ? b.free / curvature : NEWTON_FIXED, before = b.free;
         b = advance(k, fmin(want, may), true, want > may ? AFTER_MEET : AFTER_NOTHING);
         beta = (float)(b.free / before);
         if (!(curvature > 0))
@@ -492,7 +489,7 @@ static __device__ void search(const newton *k, double work)
 {
     double longest;
     const double gain = gain_of(k, &longest) - work;
-    line_search s = line_search_begin(gain, fmin(1., stride * k->x->side / longest));
+    line_search s = line_search_begin(gain, fmin(1., NEWTON_STRIDE * k->x->side / longest));
     do {
         const float share = (float)s.share;
         each(k->t->nodes, [&](int32_t n) { k->t->u[n] = plus_times(k->x->started[n], share, k->x->step[n]); });
@@ -561,7 +558,7 @@ static __global__ void __launch_bounds__(GRID_THREADS, BLOCKS) newton_kernel(tis
     __shared__ grid_scratch scratch;
     const newton k = {&t, &f, &x, &scratch};
     double residual = *x.residual;
-    if (residual < balanced) /* pressures of a state far from balance mean nothing */
+    if (residual < NEWTON_BALANCED) /* pressures of a state far from balance mean nothing */
         each(x.points, [&](int32_t i) { x.held[i] = x.keep[i] * x.pressure[i]; });
     find_left(&k);
     for (int32_t count = f.count; count > 0;) {
@@ -569,7 +566,7 @@ static __global__ void __launch_bounds__(GRID_THREADS, BLOCKS) newton_kernel(tis
         count -= find_step(&k, count, &work) + 1;
         search(&k, work);
         residual = conclude(&k);
-        if (residual < tolerance)
+        if (residual < NEWTON_TOLERANCE)
             break;
     }
     look(&k, residual);

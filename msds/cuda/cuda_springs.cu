@@ -7,8 +7,6 @@ extern "C" {
 #include "msds/problem/spring.h"
 }
 
-static const double clinging = .02; /* contacts.c's */
-
 /* A spring and its other end. */
 typedef struct spring_end {
     float4 spring, place, u, v;
@@ -91,7 +89,7 @@ static __device__ void note_contact(const tissue *t, const tissue_frame *f, int3
     t->listed[n] = 0;
     if (contact_candidate(t, f, n, u)) {
         const double from[3] = {(double)u.x, (double)u.y, (double)u.z};
-        contact_consider(t, f, n, from, clinging, 0, false);
+        contact_consider(t, f, n, from, CONTACT_CLINGING, 0, false);
     }
     if (t->listed[n]) {
         tissue_contact *c = &t->contact[n];

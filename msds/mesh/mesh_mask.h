@@ -33,7 +33,7 @@ int mesh_mask_words(const char *list, bool *labels, err *e);
 
 /* Makes m (zeroed) of the words about the image. cell: the size of a finest cell, voxels. At most MESH_MASK_BYTES a
  * voxel are taken. -1 with e filled, and to be freed all the same, as below: no memory, nothing that is tissue. */
-enum { MESH_MASK_BYTES = 4 };
+enum { MESH_MASK_BYTES = 20 };
 
 int mesh_mask_grey(mesh_mask *m, const char *list, const volume *like, int top, const double cell[3], err *e);
 

@@ -45,7 +45,8 @@ static int find_row(runs *r, int64_t row, err *e)
 {
     const uint8_t *v = r->mask + row * r->size[0];
     const int64_t j = row % r->size[1], k = row / r->size[1];
-    const bool edge = j == 0 || k == 0 || j == r->size[1] - 1 || k == r->size[2] - 1;
+    const bool deep = r->size[2] > 1; /* a flat image has no edge across it */
+    const bool edge = j == 0 || j == r->size[1] - 1 || (deep && (k == 0 || k == r->size[2] - 1));
     for (int64_t x = 0; x < r->size[0];) {
         const int64_t from = x;
         while (x < r->size[0] && v[x] == v[from])

@@ -13,7 +13,7 @@ typedef struct msds_cavity {
     int32_t volume;  /* the model's */
     double pressure; /* Pa: that the wall is under now */
     double at_rest;  /* Pa: with which the model's shape is in balance */
-    double outflow;  /* Pa s/m3: pressure by how fast the content is pressed out; 0: it leaves freely */
+    double outflow;  /* Pa s/m3: rise of the pressure per rate of volume lost; 0: the content leaves freely */
     double wall;     /* N/m: Young's modulus of a wall of its own times its thickness; 0: none */
 } msds_cavity;
 

@@ -6,8 +6,6 @@
 
 #include <stdlib.h>
 
-enum { STEPS_MOST = 4000 };
-
 /* Shares of the probe's size: what counts as touched, and how exactly gaps are found. */
 static const double touched = .005, fine = .0005;
 
@@ -77,12 +75,44 @@ static bool may_be_near(const probe_placed *at, const double ball[4], double tha
     return square < reach * reach && -probe_at(at, ball).depth - ball[3] < than;
 }
 
+/* Twice the signed area of a, b and x across the x axis; *left: its sign, where a point on the edge is on one side of
+ * it, whichever way a face goes along the edge. */
+static double turn(const double *a, const double *b, const double *x, bool *left)
+{
+    const bool swapped = a[1] > b[1] || (a[1] == b[1] && a[2] > b[2]);
+    const double *p = swapped ? b : a, *q = swapped ? a : b;
+    const double area = (q[1] - p[1]) * (x[2] - p[2]) - (q[2] - p[2]) * (x[1] - p[1]);
+    *left = (area >= 0) != swapped;
+    return swapped ? -area : area;
+}
+
+/* Whether the line from x along the x axis goes through a face. */
+static bool is_crossed(const double *corner, const double *x)
+{
+    bool left[3];
+    const double side[3] = {turn(corner + 3, corner + 6, x, &left[0]), turn(corner + 6, corner, x, &left[1]),
+                            turn(corner, corner + 3, x, &left[2])};
+    const double all = side[0] + side[1] + side[2];
+    if (left[0] != left[1] || left[1] != left[2] || all == 0)
+        return false;
+    return (side[0] * corner[0] + side[1] * corner[3] + side[2] * corner[6]) / all > x[0];
+}
+
+static bool is_in_bone(const bones *b, const double x[3])
+{
+    bool within = false;
+    for (int64_t i = 0; i < b->faces; i++)
+        if (is_crossed(b->corner + 9 * i, x))
+            within = !within;
+    return within;
+}
+
 double bones_gap(const bones *b, const probe_placed *at, double most)
 {
     for (int64_t i = 0; i < b->faces && most > 0; i++)
         if (may_be_near(at, b->ball + 4 * i, most))
             most = narrow_gap(at, b->corner + 9 * i, most, fine * at->shape.size);
-    return most;
+    return most > 0 && is_in_bone(b, at->centre) ? 0 : most;
 }
 
 static double gap_at(const bones *b, const probe *shape, const screw *way, double share, double most)
@@ -107,7 +137,7 @@ double bones_stop(const bones *b, const probe *shape, const screw *way)
     double share = 0, gap = gap_at(b, shape, way, 0, length + 2 * least);
     if (!(gap > 0) || gap >= length + least)
         return 1;
-    for (int i = 0; i < STEPS_MOST; i++) {
+    for (;;) {
         const double next = fmin(1, share + fmax(gap - 2 * least, least) / length);
         const double then = gap_at(b, shape, way, next, (1 - next) * length + 2 * least);
         if (has_touched(shape, gap, then))
@@ -117,5 +147,4 @@ double bones_stop(const bones *b, const probe *shape, const screw *way)
         if (share >= 1)
             return 1;
     }
-    return share;
 }

@@ -18,7 +18,7 @@ typedef struct bones {
 int bones_make(bones *b, const msds_problem *p, const model *m, err *e);
 void bones_free(bones *b);
 
-/* How far the probe is from bone, m: `most` where that is farther; 0: it is in it. */
+/* How far the probe is from bone, m: `most` where that is farther; 0: it is in it, or touches it. */
 double bones_gap(const bones *b, const probe_placed *at, double most);
 
 /* The share of a motion after which bone stops the probe; 1: none does. By conservative advancement: the probe goes on

@@ -1,10 +1,11 @@
 #include "msds/run/cavities.h"
 
+#include "base/checksum.h"
 #include "base/near.h"
 #include "base/num.h"
 
+#include <inttypes.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum { NAMES = 256, ITEM = 300 };
@@ -33,11 +34,11 @@ static int find_volume(const model *m, what w, const char *name, err *e)
     const char *list[NAMES];
     const int64_t all = names ? names->rows : 0;
     const int count = all < NAMES ? (int)all : NAMES;
-    for (int i = 0; i < count; i++) {
+    for (int64_t i = 0; i < all; i++)
+        if (!strcmp(names->str[i], name))
+            return (int)i;
+    for (int i = 0; i < count; i++)
         list[i] = names->str[i];
-        if (!strcmp(list[i], name))
-            return i;
-    }
     return near_option(e, of[w].option, "volume", name, list, count);
 }
 
@@ -162,9 +163,12 @@ void cavities_put(const cavities *c, msds_problem *p)
 
 void cavities_text(const cavities *c, const model *m, char *to, size_t size)
 {
-    size_t at = 0;
-    snprintf(to, size, "none");
-    for (int i = 0; i < c->count && at < size; i++)
-        at += (size_t)snprintf(to + at, size - at, "%s%s/%.9g/%.9g/%.9g", i ? "," : "", name_of(m, c->list[i].volume),
-                               c->list[i].at_rest, c->list[i].outflow, c->list[i].wall);
+    uint32_t crc = 0;
+    char text[ITEM + 100];
+    for (int i = 0; i < c->count; i++) {
+        snprintf(text, sizeof text, "%.*s %.17g %.17g %.17g", ITEM, name_of(m, c->list[i].volume), c->list[i].at_rest,
+                 c->list[i].outflow, c->list[i].wall);
+        crc = checksum_add(crc, text, strlen(text));
+    }
+    snprintf(to, size, "%d_of_0x%08" PRIx32, c->count, crc);
 }

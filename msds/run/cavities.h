@@ -29,7 +29,7 @@ int cavities_change(cavities *c, const char *pressures, const model *m, err *e);
 /* The problem's are these from here on, which must outlive it. */
 void cavities_put(const cavities *c, msds_problem *p);
 
-/* Their names and walls in a word or two, for a record; to: of `size` bytes. */
+/* A fingerprint of their names, pressures at rest, resistances and walls, for a record; to: of `size` bytes. */
 void cavities_text(const cavities *c, const model *m, char *to, size_t size);
 
 #endif

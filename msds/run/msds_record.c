@@ -13,7 +13,7 @@ static const char rest[] = "rest";
 
 /* What a record is of. */
 typedef struct origin {
-    char probe[200], model[RECORD_WORD], start[RECORD_WORD], cavities[600];
+    char probe[200], model[RECORD_WORD], start[RECORD_WORD], cavities[RECORD_WORD];
     record_of list[6];
     int count;
 } origin;

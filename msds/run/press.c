@@ -141,7 +141,7 @@ static void ease_in(const press *s, const pose *at, press_moves *m)
     const pose from = drawn_back(s, at, back);
     const screw way = screw_of(&from, at);
     const double share = bones_stop(&s->bones, s->shape, &way), end = (1 - share) * back;
-    m->stopped = share < 1;
+    m->stopped = m->stopped || share < 1;
     m->back = back;
     m->count = (int)fmin(PRESS_MOVES, fmax(1, ceil(back / (ease * s->shape->size))));
     for (int i = 0; i < m->count; i++)

@@ -68,8 +68,9 @@ typedef struct session {
     int64_t next_frame;
     progress progress;
     msds_listener listener;
-    int64_t posed; /* frames made */
-    double time;   /* s: of the last, or of the last that the model came with */
+    int64_t posed;  /* frames made */
+    double time;    /* s: of the last, or of the last that the model came with */
+    double elapsed; /* s: between the last two; 0 for the first */
     peak moved, pushed;
     bool pressed; /* some node, in some frame */
     bool dented;  /* the skin */

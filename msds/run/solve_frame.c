@@ -62,7 +62,7 @@ static int64_t make_moves(session *s, msds_state *state, const press_moves *move
                           err *e)
 {
     int64_t count = 0;
-    plan->elapsed /= moves->count;
+    plan->elapsed = s->elapsed / moves->count;
     const msds_method method = plan->method;
     for (int i = 0; i < moves->count; i++) {
         plan->method = method_along(moves, i, method);
@@ -122,13 +122,12 @@ frame_input solve_frame_input(const session *s, double time, const pose *at, int
 
 static void begin(session *s, const frame_input *from)
 {
-    const double elapsed = s->posed ? from->time - s->time : 0;
+    s->elapsed = s->posed ? from->time - s->time : 0;
     s->time = from->time;
     s->used = from->method;
     s->plan = (msds_plan){.method = methods_solver(from->method),
                           .warp = methods_warps(from->method),
                           .dt = s->o->dt / (double)s->substeps,
-                          .elapsed = elapsed,
                           .touched = s->o->probe && from->has_pose,
                           .listener = s->progress.on ? &s->listener : NULL};
 }

@@ -104,7 +104,7 @@ int slice_options_check(const slice_options *o, err *e)
         return -1;
     if (o->rigid && !o->poses && !o->replay)
         return err_usage(e, "--rigid without --poses; expected where the probe is");
-    if (o->rigid && o->coupling.count)
+    if (o->rigid && o->coupling.count && o->coupling.value[0].value != 0)
         return err_usage(e, "--coupling with --rigid: there is no tissue that the face could touch");
     if (o->rigid && o->cut)
         return err_usage(e, "--cut with --rigid: there are no tetrahedra to cut");

@@ -49,7 +49,7 @@ static int take_width(slice_session *s, const char *key, const char *value, err 
 
 static int take_coupling(slice_session *s, const char *key, const char *value, err *e)
 {
-    if (s->o.rigid)
+    if (s->o.rigid && strcmp(value, "0") != 0)
         return err_usage(e, "--%s %.60s with --rigid: there is no tissue that the face could touch", key, value);
     return take_option(s, key, value, e);
 }

@@ -48,7 +48,9 @@ mv "$T/run.sinew" "$T/one.sinew"
 run far --method tissue --friction .3 --threads 3
 check "for any number of threads" cmp "$T/run.sinew" "$T/one.sinew"
 for vectors in plain AVX2 AVX-512; do
-    if SINEW_VECTORS=$vectors msds-run -q -d cpu --version >/dev/null && SINEW_VECTORS=$vectors run far --method tissue --friction .3 && [ -s "$T/forces" ]; then
+    rm -f "$T/run.sinew"
+    SINEW_VECTORS=$vectors run far --method tissue --friction .3 2>"$T/said"
+    if ! grep -q SINEW_VECTORS "$T/said"; then
         check "and by $vectors" cmp "$T/run.sinew" "$T/one.sinew"
     else
         skip 1 "this processor has no $vectors"

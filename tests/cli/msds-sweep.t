@@ -79,6 +79,14 @@ check "in bone at first" msds-run --text --method fem --probe sphere:5mm --poses
 is "$(heights | awk '{ print ($1 > 10.02 && $1 < 10.06) }') $(grep -c 'in.tum:1: the probe begins inside the tissue' "$T/stderr") $(
     grep -c 'in.tum:1: the probe would enter a rigid volume' "$T/stderr")" "1 1 1" "is moved in along its axis, to bone"
 
+# A ball that is smaller than the bone is thick, so that its inside is far from any side.
+printf '0 .02 .02 .0205 1 0 0 0\n.1 .02 .02 .004 1 0 0 0\n' >"$T/deep.tum"
+check "a jump deep into bone" msds-run --text --method fem --probe sphere:1mm --poses "$T/deep.tum" -o "$T/run.sinew" <"$T/bone.sinew"
+is "$(heights | awk 'END { print ($1 > 10 && $1 < 10.1) }')" 1 "ends on it"
+tail -n 1 "$T/deep.tum" >"$T/begin.tum"
+check "deep in bone at first" msds-run --text --method fem --probe sphere:1mm --poses "$T/begin.tum" -o "$T/run.sinew" <"$T/bone.sinew"
+is "$(heights | awk 'END { print ($1 > 10 && $1 < 10.1) }')" 1 "is moved in from outside, to bone"
+
 # What is rigid without a volume stops nobody: nodes of a side.
 msds-mesh -q --nodes 9x9x5 --size 4cm,4cm,2cm --fix zmin,xmin,xmax -o "$T/floor.sinew"
 printf '0 .02 .02 .0205 1 0 0 0\n.1 .02 .02 .015 1 0 0 0\n.2 .02 .02 -.001 1 0 0 0\n' >"$T/floor.tum"
