@@ -40,21 +40,37 @@ static int take_faces(bones *b, const msds_problem *p, const boundary *outside, 
     return 0;
 }
 
-int bones_make(bones *b, const msds_problem *p, const model *m, err *e)
+static bool is_held(const msds_problem *p, int64_t t)
 {
-    bool any = false, *rigid = mem_array(p->elements, sizeof *rigid, "bone", e);
-    boundary outside = {0};
-    *b = (bones){0};
-    if (!rigid)
-        return -1;
+    const int32_t *n = p->element_node + 4 * t;
+    return p->fixed[n[0]] && p->fixed[n[1]] && p->fixed[n[2]] && p->fixed[n[3]];
+}
+
+/* Which elements are of volumes that are held as a whole; some, where two sides that are held meet, are held alone.
+ * moves: volumes, zeroed. Returns whether there are any. */
+static bool find_rigid(const msds_problem *p, bool *moves, bool *rigid)
+{
+    bool any = false;
+    for (int64_t t = 0; t < p->elements; t++)
+        moves[p->volume[t]] = moves[p->volume[t]] || !is_held(p, t);
     for (int64_t t = 0; t < p->elements; t++) {
-        const int32_t *n = p->element_node + 4 * t;
-        rigid[t] = p->fixed[n[0]] && p->fixed[n[1]] && p->fixed[n[2]] && p->fixed[n[3]];
+        rigid[t] = !moves[p->volume[t]];
         any = any || rigid[t];
     }
-    const int failed = any && (boundary_of(&outside, m, rigid, NULL, e) || take_faces(b, p, &outside, e));
+    return any;
+}
+
+int bones_make(bones *b, const msds_problem *p, const model *m, err *e)
+{
+    bool *rigid = mem_array(p->elements, sizeof *rigid, "bone", e);
+    bool *moves = rigid ? mem_array(model_count(m, "volume"), sizeof *moves, "bone", e) : NULL;
+    boundary outside = {0};
+    *b = (bones){0};
+    const int failed = !moves || (find_rigid(p, moves, rigid) &&
+                                  (boundary_of(&outside, m, rigid, NULL, e) || take_faces(b, p, &outside, e)));
     boundary_free(&outside);
     free(rigid);
+    free(moves);
     return failed ? -1 : 0;
 }
 

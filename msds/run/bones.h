@@ -1,6 +1,6 @@
-/* What a probe cannot enter: rigid bodies of the model, which are tetrahedra of four rigid nodes, as msds-mesh --fix
- * makes them of a volume. Rigid nodes of other tetrahedra, such as those of a side, stop nothing. The creator owns the
- * triangles of their outside, which do not move.
+/* What a probe cannot enter: volumes of the model all of whose nodes are rigid, as msds-mesh --fix makes them. Other
+ * rigid nodes, such as those of a side, stop nothing. The creator owns the triangles of their outside, which do not
+ * move.
  */
 #ifndef SINEW_BONES_H
 #define SINEW_BONES_H

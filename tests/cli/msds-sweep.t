@@ -93,6 +93,12 @@ printf '0 .02 .02 .0205 1 0 0 0\n.1 .02 .02 .015 1 0 0 0\n.2 .02 .02 -.001 1 0 0
 check "through a floor" msds-run --text --method fem --probe sphere:5mm --poses "$T/floor.tum" -o "$T/run.sinew" <"$T/floor.sinew"
 is "$(heights | tail -n 1) $(grep -c rigid "$T/stderr")" "-1.0000 0" "the probe goes where it is told"
 
+# Where two sides that are held meet there are tetrahedra of four rigid nodes.
+msds-mesh -q --nodes 8x8x4 --size 4cm,4cm,2cm --fix sides,zmin -o "$T/box.sinew"
+printf '0 .02 .02 .0205 1 0 0 0\n.1 .02 .02 .015 1 0 0 0\n' >"$T/plate.tum"
+check "a plate on a box whose sides are held" msds-run --text --method fem --probe linear:5cm,5cm --poses "$T/plate.tum" -o "$T/run.sinew" <"$T/box.sinew"
+is "$(heights | tail -n 1) $(grep -c rigid "$T/stderr")" "15.0000 0" "goes where it is told"
+
 # Live, with the jump and the stop in it, and the record again.
 mkfifo "$T/poses"
 for method in msds fem exact; do
