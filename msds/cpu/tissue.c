@@ -72,23 +72,6 @@ static double longest(tissue *t)
     return sqrt(most);
 }
 
-static void dot_work(void *context, int64_t chunk, int64_t from, int64_t to)
-{
-    tissue *t = context;
-    double sum = 0;
-    for (int a = 0; a < 3; a++)
-        for (int64_t i = from * LANES; i < to * LANES; i++)
-            sum += (double)t->along->x[a][i] * (double)t->with->x[a][i];
-    t->sum[chunk] = sum;
-}
-
-static double dot(tissue *t, const lanes_field *f, const lanes_field *with)
-{
-    t->along = f;
-    t->with = with;
-    return tissue_nodes_sum(t, dot_work);
-}
-
 static void go_work(void *context, int64_t chunk, int64_t from, int64_t to)
 {
     const tissue *t = context;
@@ -237,7 +220,7 @@ static double expand(tissue *t)
         if (c->meets)
             pressed_add(&t->way, own_of(t, c), c, most - along);
     }
-    const double curvature = change_along(t), along = dot(t, &t->left, &t->way);
+    const double curvature = change_along(t), along = tissue_dot(t, &t->left, &t->way);
     const bool is_whole = !(curvature > 0) || NEWTON_FIXED * curvature <= along;
     const double free = advance(t, is_whole ? NEWTON_FIXED : fmax(along, 0) / curvature);
     for (int64_t i = 0; i < t->pressed.c->count && is_whole; i++)
@@ -314,7 +297,7 @@ static int64_t find_step(tissue *t, int64_t most)
 /* What is left times the step, but for what presses nodes on their planes, with what penalties push. */
 static double slope_of(tissue *t)
 {
-    double slope = dot(t, &t->left, &t->step);
+    double slope = tissue_dot(t, &t->left, &t->step);
     for (int64_t i = 0; i < t->pressed.c->count; i++) {
         const contact *c = &t->pressed.c->list[i];
         const double along = pressed_along(&t->step, own_of(t, c), c);
@@ -353,7 +336,7 @@ static void spare_walls(tissue *t, double first)
     shorten_by(t, first);
     tissue_copy(t, &t->way, &t->step);
     const double least = tissue_walls_spare(&t->m, &t->step, t->share);
-    if (dot(t, &t->first, &t->step) > t->moved)
+    if (tissue_dot(t, &t->first, &t->step) > t->moved)
         return;
     tissue_copy(t, &t->step, &t->way);
     shorten_by(t, fmax(least, yielding));
@@ -367,7 +350,7 @@ static void search(tissue *t)
         spare_walls(t, share);
         share = 1;
     }
-    line_search s = line_search_begin(dot(t, &t->first, &t->step) - t->moved, share);
+    line_search s = line_search_begin(tissue_dot(t, &t->first, &t->step) - t->moved, share);
     do {
         go(t, s.share);
         find_left(t);

@@ -88,7 +88,8 @@ INLINE void take_g(const tissue_mesh *m, int64_t group, v8 g[9])
         g[k] = load(m->g + (9 * group + k) * LANES);
 }
 
-INLINE void measure_group(const tissue_mesh *m, int64_t i, bool row, const lanes_field *u)
+/* m->g of a group's elements at u. Returns J - 1. */
+INLINE v8 measure_elements(const tissue_mesh *m, int64_t i, bool row, const lanes_field *u)
 {
     v8 q[9], g[9], c[9];
     take_gradients(m, i, q);
@@ -96,7 +97,12 @@ INLINE void measure_group(const tissue_mesh *m, int64_t i, bool row, const lanes
     stable_cofactors(g, c);
     for (int k = 0; k < 9; k++)
         store(m->g + (9 * i + k) * LANES, g[k]);
-    const v8 swelling = stable_swelling(g, c), counted = stable_counted(swelling);
+    return stable_swelling(g, c);
+}
+
+INLINE void measure_group(const tissue_mesh *m, int64_t i, bool row, const lanes_field *u)
+{
+    const v8 swelling = measure_elements(m, i, row, u), counted = stable_counted(swelling);
     store(m->counted + i * LANES, counted);
     store(m->swollen + i * LANES, .25f * load(m->volume + i * LANES) * stable_swelling_counted(swelling, counted));
 }
@@ -120,6 +126,12 @@ INLINE void put_law(const tissue_mesh *m, int64_t i, v8 a, v8 b, v8 c, v8 d)
     store(law + LANES, b);
     store(law + 2 * LANES, c);
     store(law + 3 * LANES, d);
+}
+
+INLINE stable_state take_law(const tissue_mesh *m, int64_t i)
+{
+    const float *law = m->law + STABLE_NUMBERS * i * LANES;
+    return (stable_state){load(law), load(law + LANES), load(law + 2 * LANES), load(law + 3 * LANES)};
 }
 
 INLINE void stress_group(const tissue_mesh *m, int64_t i, bool row)
@@ -152,8 +164,7 @@ INLINE void swell_group(const tissue_mesh *m, int64_t i, bool row, const lanes_f
 INLINE void tangent_group(const tissue_mesh *m, int64_t i, bool row, const lanes_field *way)
 {
     v8 q[9], g[9], d[9], stress[9];
-    const float *law = m->law + STABLE_NUMBERS * i * LANES;
-    const stable_state at = {load(law), load(law + LANES), load(law + 2 * LANES), load(law + 3 * LANES)};
+    const stable_state at = take_law(m, i);
     take_gradients(m, i, q);
     take_g(m, i, g);
     derive(m, i, row, way, q, d);
@@ -167,13 +178,7 @@ INLINE void tangent_group(const tissue_mesh *m, int64_t i, bool row, const lanes
 
 INLINE void measure_lumen(const tissue_mesh *m, int64_t i, const lanes_field *u)
 {
-    v8 q[9], g[9], c[9];
-    take_gradients(m, i, q);
-    derive(m, i, false, u, q, g);
-    stable_cofactors(g, c);
-    for (int k = 0; k < 9; k++)
-        store(m->g + (9 * i + k) * LANES, g[k]);
-    store(m->swollen + i * LANES, load(m->volume + i * LANES) * stable_swelling(g, c));
+    store(m->swollen + i * LANES, load(m->volume + i * LANES) * measure_elements(m, i, false, u));
 }
 
 /* Takes what acts on corners that lie on a wall off them, and adds what keeps walls from crossing: b. */
@@ -224,8 +229,7 @@ INLINE void swell_lumen(const tissue_mesh *m, int64_t i)
 INLINE void tangent_lumen(const tissue_mesh *m, int64_t i, const lanes_field *way)
 {
     v8 q[9], g[9], d[9], stress[9];
-    const float *law = m->law + STABLE_NUMBERS * i * LANES;
-    const stable_state at = {load(law), load(law + LANES), load(law + 2 * LANES), load(law + 3 * LANES)};
+    const stable_state at = take_law(m, i);
     take_gradients(m, i, q);
     take_g(m, i, g);
     derive(m, i, false, way, q, d);

@@ -20,16 +20,6 @@ static void prestress_work(void *context, int64_t chunk, int64_t from, int64_t t
     t->loops->tissue_prestress(&t->m, &t->step, from, to);
 }
 
-static void square_work(void *context, int64_t chunk, int64_t from, int64_t to)
-{
-    const tissue *t = context;
-    double sum = 0;
-    for (int a = 0; a < 3; a++)
-        for (int64_t i = from * LANES; i < to * LANES; i++)
-            sum += (double)t->pulled.x[a][i] * (double)t->pulled.x[a][i];
-    t->sum[chunk] = sum;
-}
-
 /* What pressures at rest push nodes with, in t->left, and a unit of each; and the tangents without them. u is at rest,
  * and no point holds anything. */
 static void find_load(tissue *t)
@@ -41,7 +31,7 @@ static void find_load(tissue *t)
         float *held = &t->m.held[t->m.cavity_point + c];
         *held = -1;
         tissue_pull(t, &t->pulled);
-        t->pushed[c] = tissue_nodes_sum(t, square_work);
+        t->pushed[c] = tissue_dot(t, &t->pulled, &t->pulled);
         tissue_advance(t, t->pressed.p->cavity[c].at_rest);
         *held = 0;
     }

@@ -116,6 +116,23 @@ double tissue_stiffness(tissue *t, const lanes_field *way)
     return tissue_nodes_sum(t, gather_work);
 }
 
+static void dot_work(void *context, int64_t chunk, int64_t from, int64_t to)
+{
+    tissue *t = context;
+    double sum = 0;
+    for (int a = 0; a < 3; a++)
+        for (int64_t i = from * LANES; i < to * LANES; i++)
+            sum += (double)t->along->x[a][i] * (double)t->with->x[a][i];
+    t->sum[chunk] = sum;
+}
+
+double tissue_dot(tissue *t, const lanes_field *f, const lanes_field *with)
+{
+    t->along = f;
+    t->with = with;
+    return tissue_nodes_sum(t, dot_work);
+}
+
 void tissue_clear(const tissue *t, lanes_field *f)
 {
     memset(f->memory, 0, 3 * (size_t)(t->pressed.s->nodes + 2 * LANES) * sizeof *f->memory);

@@ -31,6 +31,9 @@ double tissue_advance(tissue *t, double alpha);
 /* way = inverse left + beta way. */
 void tissue_turn(tissue *t, double beta);
 
+/* The sum of f . with over all nodes. */
+double tissue_dot(tissue *t, const lanes_field *f, const lanes_field *with);
+
 void tissue_clear(const tissue *t, lanes_field *f);
 void tissue_copy(const tissue *t, lanes_field *to, const lanes_field *from);
 

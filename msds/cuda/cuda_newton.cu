@@ -255,7 +255,7 @@ static __device__ void find_left(const newton *k)
 
 /* ---- a step */
 
-/* What of a step is left: squares over the diagonal. */
+/* The residuals of a step: sums of squares over the diagonal. */
 typedef struct balance {
     double free; /* of nodes along what they may */
     double off;  /* of what would pull nodes off their planes */
@@ -275,7 +275,7 @@ static __device__ inline float4 hold(const newton *k, int32_t n, float4 left)
     return contact_add(c, left, -along);
 }
 
-/* Whether a node that is free has come to the probe. */
+/* Returns whether a free node has reached the probe. */
 static __device__ inline bool has_come(const newton *k, int32_t n, after then, double may)
 {
     if (then == AFTER_HOLD)

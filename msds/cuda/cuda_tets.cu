@@ -52,7 +52,7 @@ static int make_sums(const tissue_sums *from, host_sums *to, err *e)
  * stored again. */
 enum { SHAPES_BACK = 16 };
 
-/* Which of the shapes so far these gradients are; or the next. */
+/* Returns the index of these gradients among the shapes so far, or the next index. */
 static int64_t find_shape(const host_tets *h, const float *q)
 {
     for (int64_t i = h->shapes - 1; i >= 0 && i >= h->shapes - SHAPES_BACK; i--)

@@ -28,7 +28,7 @@ typedef struct mesh_cells {
     int64_t count, capacity;
 } mesh_cells;
 
-/* Whether a cell that was halved `level` times is to be halved again. */
+/* Decides whether a cell that was halved `level` times must be halved again. */
 typedef struct mesh_wish {
     bool (*halve)(const void *context, const mesh_cells *c, const mesh_cell *of, int level);
     const void *context;

@@ -57,6 +57,19 @@ SIMPLEX_FUNCTION void simplex_shape(const double *x0, const double *x1, const do
     }
 }
 
+/* The volume of corners x0 to x3, m3; below 0 for one that is inverted. */
+SIMPLEX_FUNCTION double simplex_volume(const double *x0, const double *x1, const double *x2, const double *x3)
+{
+    double a[3], b[3], c[3], bc[3];
+    for (int i = 0; i < 3; i++) {
+        a[i] = x1[i] - x0[i];
+        b[i] = x2[i] - x0[i];
+        c[i] = x3[i] - x0[i];
+    }
+    simplex_cross(b, c, bc);
+    return (a[0] * bc[0] + a[1] * bc[1] + a[2] * bc[2]) / 6;
+}
+
 SIMPLEX_FUNCTION void simplex_material(double young, double poisson, simplex *s)
 {
     s->lambda = young * poisson / ((1 + poisson) * (1 - 2 * poisson));

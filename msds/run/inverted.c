@@ -36,13 +36,10 @@ static void count_work(void *context, int64_t chunk, int64_t from, int64_t to)
     int64_t count = 0;
     for (int64_t t = from; t < to; t++) {
         const int32_t *n = v->p->element_node + 4 * t;
-        const double *x = v->place + 3 * (int64_t)n[0];
-        double edge[3][3], normal[3];
-        for (int c = 0; c < 3; c++)
-            for (int a = 0; a < 3; a++)
-                edge[c][a] = v->place[3 * (int64_t)n[c + 1] + a] - x[a];
-        simplex_cross(edge[1], edge[2], normal);
-        count += !(edge[0][0] * normal[0] + edge[0][1] * normal[1] + edge[0][2] * normal[2] > 0);
+        const double *x[4];
+        for (int c = 0; c < 4; c++)
+            x[c] = v->place + 3 * (int64_t)n[c];
+        count += !(simplex_volume(x[0], x[1], x[2], x[3]) > 0);
     }
     v->sum[chunk] = count;
 }

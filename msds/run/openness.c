@@ -7,15 +7,11 @@
 static double volume_of(const msds_problem *p, int64_t t, const double *u)
 {
     const int32_t *n = p->element_node + 4 * t;
-    double x[4][3], normal[3], edge[3][3];
+    double x[4][3];
     for (int c = 0; c < 4; c++)
         for (int a = 0; a < 3; a++)
             x[c][a] = p->position[3 * (int64_t)n[c] + a] + (u ? u[3 * (int64_t)n[c] + a] : 0);
-    for (int c = 0; c < 3; c++)
-        for (int a = 0; a < 3; a++)
-            edge[c][a] = x[c + 1][a] - x[0][a];
-    simplex_cross(edge[1], edge[2], normal);
-    return (edge[0][0] * normal[0] + edge[0][1] * normal[1] + edge[0][2] * normal[2]) / 6;
+    return simplex_volume(x[0], x[1], x[2], x[3]);
 }
 
 static void measure(const openness *o, const double *u, double to[CAVITIES_MOST])

@@ -1,5 +1,6 @@
 /* Probes: their closed forms against libccd's GJK and EPA over random points and poses, and against what can be said
  * without either; what is no probe; OBJ files that are no convex body. */
+#include "any_pose.h"
 #include "tap.h"
 
 #include "base/mem.h"
@@ -10,28 +11,6 @@
 #include <string.h>
 
 enum { POINTS = 2000 };
-
-static uint64_t seed = 88172645463325252u;
-
-/* In [-1, 1). */
-static double any(void)
-{
-    seed ^= seed << 13;
-    seed ^= seed >> 7;
-    seed ^= seed << 17;
-    return (double)(seed >> 11) / 4503599627370496. - 1;
-}
-
-static pose any_pose(void)
-{
-    pose at = {{any(), any(), any()}, {any(), any(), any(), any()}};
-    double length = 0;
-    for (int a = 0; a < 4; a++)
-        length += at.quaternion[a] * at.quaternion[a];
-    for (int a = 0; a < 4; a++)
-        at.quaternion[a] /= sqrt(length);
-    return at;
-}
 
 static void any_near(const probe_placed *p, double x[3])
 {

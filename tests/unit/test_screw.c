@@ -3,34 +3,13 @@
 #include "probe/narrow.h"
 #include "probe/screw.h"
 
+#include "any_pose.h"
 #include "tap.h"
 
 #include <math.h>
 #include <string.h>
 
 #define PI 3.14159265358979323846
-
-static uint64_t seed = 88172645463325252u;
-
-/* In [-1, 1). */
-static double any(void)
-{
-    seed ^= seed << 13;
-    seed ^= seed >> 7;
-    seed ^= seed << 17;
-    return (double)(seed >> 11) / 4503599627370496. - 1;
-}
-
-static pose any_pose(void)
-{
-    pose at = {{any(), any(), any()}, {any(), any(), any(), any()}};
-    double length = 0;
-    for (int i = 0; i < 4; i++)
-        length += at.quaternion[i] * at.quaternion[i];
-    for (int i = 0; i < 4; i++)
-        at.quaternion[i] /= sqrt(length);
-    return at;
-}
 
 static double apart(const double a[3], const double b[3])
 {
