@@ -196,14 +196,6 @@ static void multiply_work(void *context, int64_t chunk, int64_t from, int64_t to
 
 /* ---- by solves */
 
-static double along(const contact *c, const double *u)
-{
-    double sum = 0;
-    for (int a = 0; a < 3; a++)
-        sum += c->way[a] * u[3 * (int64_t)c->node + a];
-    return sum;
-}
-
 /* result = K^-1 N force. */
 static void solve(compliance *s, const double *force)
 {
@@ -231,7 +223,8 @@ void compliance_lead(compliance *s, const double *left, double *moved)
         factor_backward(s->factor, s->led);
     for (int64_t i = 0; i < s->c->count; i++) {
         const contact *c = &s->c->list[i];
-        moved[i] = s->dense ? factor_dot(s->factor, c->node, s->normal + i * s->factor->path) : along(c, s->led);
+        moved[i] =
+            s->dense ? factor_dot(s->factor, c->node, s->normal + i * s->factor->path) : contacts_along(c, s->led);
     }
 }
 
@@ -246,7 +239,7 @@ void compliance_multiply(compliance *s, const double *force, double *product_)
     for (int64_t i = 0; i < s->c->count; i++) {
         const contact *c = &s->c->list[i];
         if (!s->dense)
-            product_[i] = along(c, s->result);
+            product_[i] = contacts_along(c, s->result);
         if (s->p->options.penalty)
             product_[i] += force[i] / s->p->repulsion[c->node];
     }

@@ -21,6 +21,16 @@ typedef struct contact {
     double drag[3]; /* N: and what it pulls with after a step */
 } contact;
 
+/* How far u, the model's nodes x 3, moves a contact's node along its way. */
+static inline double contacts_along(const contact *c, const double *u)
+{
+    const double *own = u + 3 * (int64_t)c->node;
+    double sum = 0;
+    for (int a = 0; a < 3; a++)
+        sum += c->way[a] * own[a];
+    return sum;
+}
+
 typedef struct contacts {
     contact *list;
     int64_t count;

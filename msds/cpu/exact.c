@@ -121,15 +121,6 @@ static double find_left(exact *x, const double *u, bool begins)
     return load > 0 ? sqrt(left / load) : 0;
 }
 
-/* How far u moves a contact its way, m. */
-static double gone(const contact *c, const double *u)
-{
-    double sum = 0;
-    for (int a = 0; a < 3; a++)
-        sum += c->way[a] * u[3 * (int64_t)c->node + a];
-    return sum;
-}
-
 /* Finds f >= 0 with S f - want >= 0 and one of the two 0, from the forces of now, with which what is left leads
  * contacts on by m->product; place: m, what a frame may leave. */
 static void solve_forces(exact *x, const double *u, double place)
@@ -142,7 +133,7 @@ static void solve_forces(exact *x, const double *u, double place)
         m->x[i] = c->force;
         m->g[i] = m->product[i] - still_to_go(x, u, i);
         m->inverse[i] = compliance_inverse(&x->compliance, c);
-        far = fmax(far, fmax(fabs(gone(c, u) + m->product[i]), -m->g[i]));
+        far = fmax(far, fmax(fabs(contacts_along(c, u) + m->product[i]), -m->g[i]));
     }
     if (x->solves == 0)
         mprgp_scale(m);

@@ -1,33 +1,22 @@
 #include "msds/mesh/mesh_refine.h"
 
+#include "msds/mesh/mesh_shape.h"
+
 #include <math.h>
 
 /* A cell that ends at a depth, but for rounding, does not reach it. */
 static const double rounding = 1e-9;
 
-static double length_of(const double v[3])
-{
-    return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-}
-
 /* ---- around a place */
-
-static double dot(const double *u, const double *v)
-{
-    return u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
-}
 
 /* A place as shares of the box's edges: Cramer's rule. */
 static void shares_of(const mesh_box *b, const double place[3], double to[3])
 {
     double off[3], normal[3];
-    for (int i = 0; i < 3; i++)
-        off[i] = place[i] - b->origin[i];
+    shape_less(place, b->origin, off);
     for (int a = 0; a < 3; a++) {
-        const double *v = b->edge[(a + 1) % 3], *w = b->edge[(a + 2) % 3];
-        for (int i = 0; i < 3; i++)
-            normal[i] = v[(i + 1) % 3] * w[(i + 2) % 3] - v[(i + 2) % 3] * w[(i + 1) % 3];
-        to[a] = dot(off, normal) / dot(b->edge[a], normal);
+        shape_cross(b->edge[(a + 1) % 3], b->edge[(a + 2) % 3], normal);
+        to[a] = shape_dot(off, normal) / shape_dot(b->edge[a], normal);
     }
 }
 
@@ -42,7 +31,7 @@ static double distance(const mesh_refine *r, const mesh_cells *c, const mesh_cel
         for (int i = 0; i < 3; i++)
             way[i] += to * r->box->edge[a][i];
     }
-    return length_of(way);
+    return shape_length(way);
 }
 
 /* ---- under the skin */
@@ -54,7 +43,7 @@ static bool skin_of(const mesh_refine *r, const mesh_cells *c, const mesh_cell *
     if (!r->mask)
         return true;
     const int axis = r->top / 2;
-    const double voxel = length_of(r->box->edge[axis]) / (double)r->mask->place.size[axis];
+    const double voxel = shape_length(r->box->edge[axis]) / (double)r->mask->place.size[axis];
     const mesh_span least = mesh_mask_skin(r->mask, c, of);
     range[0] = voxel * (double)least.low;
     range[1] = voxel * (double)least.high;
@@ -64,7 +53,7 @@ static bool skin_of(const mesh_refine *r, const mesh_cells *c, const mesh_cell *
 static bool is_under(const mesh_refine *r, const mesh_cells *c, const mesh_cell *of, double depth)
 {
     const int axis = r->top / 2;
-    const double unit = length_of(r->box->edge[axis]) / c->size[axis];
+    const double unit = shape_length(r->box->edge[axis]) / c->size[axis];
     const int32_t from = r->top % 2 ? c->size[axis] - of->at[axis] - of->side : of->at[axis];
     double skin[2];
     return skin_of(r, c, of, skin) && unit * from - skin[1] < depth * (1 - rounding) &&

@@ -9,6 +9,7 @@
 #include "msds/mesh/mesh_graded.h"
 #include "msds/mesh/mesh_labels.h"
 #include "msds/mesh/mesh_refine.h"
+#include "msds/mesh/mesh_shape.h"
 #include "msds/mesh/mesh_walls.h"
 
 #include <math.h>
@@ -380,11 +381,6 @@ static int say_volumes(const tool *t, const model *m, notes *warnings, err *e)
     return rc;
 }
 
-static double length_of(const double v[3])
-{
-    return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-}
-
 static void say_smoothed(const tool *t, const mesh_smoothed *s)
 {
     if (s->nodes)
@@ -402,7 +398,7 @@ static void say_cells(const tool *t, const mesh_box *b, const graded *g)
         least = g->cells.cell[i].side < least ? g->cells.cell[i].side : least;
     const double finest = (double)MESH_UNITS(g->cells.levels) / least;
     for (int a = 0; a < 3; a++)
-        side[a] = 1e3 * length_of(b->edge[a]) / (b->nodes[a] - 1);
+        side[a] = 1e3 * shape_length(b->edge[a]) / (b->nodes[a] - 1);
     if (g->refine.levels)
         tool_say(t, "cells of %.6g x %.6g x %.6g mm, the finest %.6g x %.6g x %.6g mm", side[0], side[1], side[2],
                  side[0] / finest, side[1] / finest, side[2] / finest);
