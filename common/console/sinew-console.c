@@ -89,9 +89,9 @@ static void on_said(void *context, int client, const char *text, size_t size)
         inbox_put(c->inbox, client, &m);
 }
 
-static int start(console *c, const struct options *o, char token[ADDRESS_TOKEN], err *e)
+static int start(console *c, const struct options *o, char token[ORIGIN_TOKEN], err *e)
 {
-    if (address_of(&c->at, o->listen, e) || (!address_is_local(&c->at) && address_token(token, e)))
+    if (address_of(&c->at, o->listen, e) || (!address_is_local(&c->at) && origin_token(token, e)))
         return -1;
     c->token = address_is_local(&c->at) ? NULL : token;
     c->inbox = inbox_make(e);
@@ -107,11 +107,11 @@ static int start(console *c, const struct options *o, char token[ADDRESS_TOKEN],
 
 static int put_address(const console *c, const char *path, err *e)
 {
-    char url[ADDRESS_URL];
+    char url[ORIGIN_URL];
     out *to = out_open(path, false, e);
     if (!to)
         return -1;
-    address_url(&c->at, c->token, url, sizeof url);
+    origin_url(&c->at, c->token, url, sizeof url);
     out_format(to, "%s\n", url);
     return out_close(to, e);
 }
@@ -156,7 +156,7 @@ static void finish(console *c)
 static int run_tool(int argc, char **argv)
 {
     struct options o = {0};
-    char page[INSTALLED_PATH], token[ADDRESS_TOKEN];
+    char page[INSTALLED_PATH], token[ORIGIN_TOKEN];
     err e = {0};
     tool t = {0};
     static const console none = {.open = -1};

@@ -81,7 +81,7 @@ static int check_request(struct mg_connection *c)
     address at = plan->at;
     at.port = atomic_load(&w->port);
     const char *host = mg_get_header(c, "Host"), *origin = mg_get_header(c, "Origin"), *uri = r->local_uri;
-    if (!address_has_host(&at, host))
+    if (!origin_has_host(&at, host))
         return refuse(c, 403,
                       "the header Host is not the console's address; open the address that the console printed");
     if (strcmp(r->request_method, "GET") != 0)
@@ -89,9 +89,9 @@ static int check_request(struct mg_connection *c)
     const bool live = uri && !strcmp(uri, "/live");
     if (!uri || live != (mg_get_header(c, "Upgrade") != NULL))
         return refuse(c, 404, "there is no such file");
-    if ((live || origin) && !address_is_origin(origin, host))
+    if ((live || origin) && !origin_is_page(origin, host))
         return refuse(c, 403, "the header Origin is not the console's address: only its own page may ask");
-    if (plan->token && needs_token(uri) && !address_has_token(r->query_string, plan->token))
+    if (plan->token && needs_token(uri) && !origin_has_token(r->query_string, plan->token))
         return refuse(c, 403, "the token is missing or wrong; open the address that the console printed");
     return 0;
 }

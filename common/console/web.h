@@ -1,14 +1,14 @@
 /* The console's server: the page's files by HTTP, and WebSockets at /live, each with a mailbox and a thread that sends
  * from it, so that a client that does not read stalls nobody. A client that says "got image" or "got positions" gets
  * the next of these only when it has said so again: see mailbox.h; one that says "pixels raw" can take images that are
- * not compressed. What is not asked for by our own page, at our own address, is refused: see address.h. web.c is the
+ * not compressed. What is not asked for by our own page, at our own address, is refused: see origin.h. web.c is the
  * only user of civetweb. The caller owns a web.
  */
 #ifndef SINEW_WEB_H
 #define SINEW_WEB_H
 
-#include "console/address.h"
 #include "console/mailbox.h"
+#include "console/origin.h"
 
 enum { WEB_CLIENTS = 8, WEB_PATH = 4096 };
 

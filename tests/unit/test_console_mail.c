@@ -1,7 +1,7 @@
 // Where the console listens and whom it answers; and what waits for a client: texts in order, of the rest the newest.
-// needs: common/console/address.c common/console/mailbox.c
-#include "console/address.h"
+// needs: common/console/origin.c common/console/mailbox.c
 #include "console/mailbox.h"
+#include "console/origin.h"
 #include "tap.h"
 
 #include <string.h>
@@ -10,7 +10,7 @@ static void try_address(const char *text, const char *want, bool local)
 {
     address a;
     err e = {0};
-    char got[ADDRESS_URL] = "";
+    char got[ORIGIN_URL] = "";
     if (!address_of(&a, text, &e))
         address_text(&a, got, sizeof got);
     ok(!strcmp(got, want), "'%s' is %s (%s%s)", text ? text : "nothing", want, got, e.text);
@@ -26,34 +26,33 @@ static void try_hosts(void)
     err e = {0};
     address_of(&a, "8080", &e);
     address_of(&any, "0.0.0.0:8080", &e);
-    ok(address_has_host(&a, "127.0.0.1:8080") && address_has_host(&a, "LOCALHOST:8080"), "the host is its address");
-    ok(!address_has_host(&a, "evil.example:8080"), "a name that leads here is not");
-    ok(!address_has_host(&a, "127.0.0.1") && !address_has_host(&a, "127.0.0.1:80") && !address_has_host(&a, NULL) &&
-           !address_has_host(&a, ""),
+    ok(origin_has_host(&a, "127.0.0.1:8080") && origin_has_host(&a, "LOCALHOST:8080"), "the host is its address");
+    ok(!origin_has_host(&a, "evil.example:8080"), "a name that leads here is not");
+    ok(!origin_has_host(&a, "127.0.0.1") && !origin_has_host(&a, "127.0.0.1:80") && !origin_has_host(&a, NULL) &&
+           !origin_has_host(&a, ""),
        "nor another port, or none");
-    ok(!address_has_host(&a, "127.0.0.1:8080.evil.example"), "nor what only begins so");
-    ok(address_is_any(&any) && address_has_host(&any, "lab.example:8080"), "every address has any name");
-    ok(address_is_origin("http://127.0.0.1:8080", "127.0.0.1:8080"), "the page's own origin");
-    ok(!address_is_origin("http://evil.example", "127.0.0.1:8080") && !address_is_origin(NULL, "127.0.0.1:8080") &&
-           !address_is_origin("null", "127.0.0.1:8080") &&
-           !address_is_origin("https://127.0.0.1:8080", "127.0.0.1:8080"),
+    ok(!origin_has_host(&a, "127.0.0.1:8080.evil.example"), "nor what only begins so");
+    ok(address_is_any(&any) && origin_has_host(&any, "lab.example:8080"), "every address has any name");
+    ok(origin_is_page("http://127.0.0.1:8080", "127.0.0.1:8080"), "the page's own origin");
+    ok(!origin_is_page("http://evil.example", "127.0.0.1:8080") && !origin_is_page(NULL, "127.0.0.1:8080") &&
+           !origin_is_page("null", "127.0.0.1:8080") && !origin_is_page("https://127.0.0.1:8080", "127.0.0.1:8080"),
        "others");
 }
 
 static void try_token(void)
 {
-    char a[ADDRESS_TOKEN], b[ADDRESS_TOKEN], url[ADDRESS_URL], query[80];
+    char a[ORIGIN_TOKEN], b[ORIGIN_TOKEN], url[ORIGIN_URL], query[80];
     err e = {0};
     address at;
     address_of(&at, "[::]:80", &e);
-    ok(!address_token(a, &e) && !address_token(b, &e) && strlen(a) == 32 && strcmp(a, b) != 0, "two tokens differ");
-    address_url(&at, "abc", url, sizeof url);
+    ok(!origin_token(a, &e) && !origin_token(b, &e) && strlen(a) == 32 && strcmp(a, b) != 0, "two tokens differ");
+    origin_url(&at, "abc", url, sizeof url);
     ok(!strcmp(url, "http://[::]:80/?token=abc"), "the address has it: %s", url);
     snprintf(query, sizeof query, "x=1&token=%s&y", a);
-    ok(address_has_token(query, a) && !address_has_token(query, b), "it is found in a query, and no other");
+    ok(origin_has_token(query, a) && !origin_has_token(query, b), "it is found in a query, and no other");
     snprintf(query, sizeof query, "token=%.31s", a);
-    ok(!address_has_token(query, a) && !address_has_token(NULL, a) && !address_has_token("", a) &&
-           !address_has_token("token=", a),
+    ok(!origin_has_token(query, a) && !origin_has_token(NULL, a) && !origin_has_token("", a) &&
+           !origin_has_token("token=", a),
        "a part of it is not enough");
 }
 
