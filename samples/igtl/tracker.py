@@ -1,7 +1,8 @@
 """tracker.py [ADDRESS:]PORT POSES [NAME [RATE]]: a simulated tracker. Serves the poses of a TUM file (s, m, LPS) by OpenIGTLink, as PLUS or 3D Slicer
 do: TRANSFORM messages named NAME (ProbeToReference), in RAS mm, RATE (60) a second; to everyone who connects. It says where it listens, waits for the
 first, sends all poses once, and ends. --lose FROM,COUNT: says for COUNT poses from the one of index FROM that the probe was not seen, as PLUS does, by
-sending none. Writes on standard output, for each pose that it sent: the clock (time.monotonic) and the pose's index."""
+sending none. --again: from the first pose on again, until it is stopped. Writes on standard output, for each pose that it sent: the clock (time.monotonic) and the pose's index."""
+import itertools
 import select
 import socket
 import sys
@@ -51,12 +52,15 @@ def main(arguments):
     if arguments[:1] == ["--lose"]:
         first, count = (int(word) for word in arguments[1].split(","))
         lost, arguments = range(first, first + count), arguments[2:]
+    again = arguments[:1] == ["--again"]
+    arguments = arguments[1:] if again else arguments
     listening, poses = listen(arguments[0]), read_poses(arguments[1])
     name, rate = arguments[2] if len(arguments) > 2 else "ProbeToReference", float(arguments[3]) if len(arguments) > 3 else 60
     peers = []
     accept(listening, peers)
     due = time.monotonic()
-    for index, matrix in enumerate(poses):
+    order = itertools.cycle(enumerate(poses)) if again else enumerate(poses)
+    for index, matrix in order:
         while select.select([listening], [], [], max(0, due - time.monotonic()))[0]:
             accept(listening, peers)
         if index not in lost:
