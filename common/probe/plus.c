@@ -56,22 +56,6 @@ static char *cut(char *line)
     return trim(at + wide);
 }
 
-/* Numbers between blanks. Returns how many, or -1 where it is not all numbers or more than most. */
-static int take_numbers(const char *text, double *to, int most)
-{
-    const char *end = text + strlen(text);
-    int count = 0;
-    while (*text) {
-        const char *stop;
-        if (count == most || num_scan(text, end, &stop, &to[count]) || (*stop && !chars_blank(*stop)))
-            return -1;
-        count++;
-        for (text = stop; chars_blank(*text);)
-            text++;
-    }
-    return count;
-}
-
 /* The transform of that name in the frame, made where it is new. */
 static links_transform *transform_of(plus *p, const char *name, size_t length, err *e)
 {
@@ -104,7 +88,7 @@ static int take_matrix(plus *p, const char *name, size_t length, const char *val
         return -1;
     if (t->set)
         return bad_key(p, e, name, "each transform of a frame once");
-    if (take_numbers(value, t->m, 16) != 16)
+    if (num_words(value, value + strlen(value), t->m, 16) != 16)
         return bad_key(p, e, name, "16 finite numbers");
     for (int i = 0; i < 4; i++)
         if (fabs(t->m[12 + i] - (i == 3)) > 0)
@@ -155,8 +139,8 @@ static void take_images(plus *p, const char *key, const char *value)
     if (!strcmp(key, "UltrasoundImageOrientation"))
         snprintf(p->orientation, sizeof p->orientation, "%s", value);
     double size[4];
-    if ((!strcmp(key, "DimSize") || !strcmp(key, "sizes")) && take_numbers(value, size, 4) > 0 && size[0] >= 1 &&
-        size[0] <= 1e6)
+    if ((!strcmp(key, "DimSize") || !strcmp(key, "sizes")) && num_words(value, value + strlen(value), size, 4) > 0 &&
+        size[0] >= 1 && size[0] <= 1e6)
         p->width = (int64_t)size[0];
 }
 
@@ -219,7 +203,7 @@ static bool compose(const plus *p, const char *from, const char *to, bool bad, d
 
 static int refuse(const plus *p, err *e)
 {
-    const char *from = p->from[0] ? p->from : "Image or Probe";
+    const char *usual = p->marker ? "Probe" : "Image or Probe", *from = p->from[0] ? p->from : usual;
     const char *to = p->to[0] ? p->to : "Reference or Tracker";
     char list[LINKS_LIST];
     links_list(p->frame.transform, p->frame.count, list);
@@ -233,7 +217,7 @@ static int choose(plus *p, err *e)
 {
     static const char *const from[] = {"Image", "Probe"}, *const to[] = {"Reference", "Tracker"};
     double m[16];
-    for (int i = 0; i < 4; i++)
+    for (int i = p->marker; i < 4; i += 1 + p->marker)
         if (compose(p, from[i % 2], to[i / 2], true, m)) {
             snprintf(p->from, sizeof p->from, "%s", from[i % 2]);
             snprintf(p->to, sizeof p->to, "%s", to[i / 2]);

@@ -20,7 +20,8 @@ typedef struct plus_frame {
 typedef struct plus {
     in *source;
     bool nrrd, ended;
-    int64_t width;                         /* columns of its images, 0: not known yet */
+    bool marker;   /* where no transform is asked for, one from Probe is wanted, not from Image; the caller sets it */
+    int64_t width; /* columns of its images, 0: not known yet */
     char orientation[8];                   /* UltrasoundImageOrientation, as far as it fits; "": not said yet */
     char from[LINKS_NAME], to[LINKS_NAME]; /* what is asked for; "": not chosen yet */
     plus_frame frame;                      /* as far as its keys were read */

@@ -1,7 +1,7 @@
 #include "probe/poses.h"
 
-#include "base/num.h"
 #include "base/space.h"
+#include "place/tum.h"
 
 #include <ctype.h>
 #include <inttypes.h>
@@ -22,6 +22,11 @@ int poses_open(poses *p, in *source, const char *transform, err *e)
     return p->sequence ? plus_open(&p->frames, source, transform, e) : 0;
 }
 
+void poses_of_marker(poses *p)
+{
+    p->marker = p->frames.marker = true;
+}
+
 static const char *place(const poses *p)
 {
     return p->lines.name;
@@ -40,21 +45,10 @@ static int check_time(poses *p, double time, int64_t line, err *e)
 
 int poses_take(const keyfile *k, poses_event *to, err *e)
 {
-    double v[8];
-    if (k->count != 8)
-        return keyfile_error(k, e, "%d words; expected time tx ty tz qx qy qz qw, method NAME, or set KEY VALUE",
-                             k->count);
-    for (int i = 0; i < 8; i++)
-        if (num_double(k->word[i], &v[i]))
-            return keyfile_error(k, e, "'%.100s' is not a finite number; expected time tx ty tz qx qy qz qw",
-                                 k->word[i]);
-    const double length = pose_unit(v + 4);
-    if (!pose_is_unit(length))
-        return keyfile_error(k, e, "a quaternion of length %.6g; expected 1, to within %g", length, POSE_LENGTH);
-    *to = (poses_event){.kind = POSES_POSE, .line = k->line, .time = v[0]};
-    memcpy(to->at.position, v + 1, sizeof to->at.position);
-    memcpy(to->at.quaternion, v + 4, sizeof to->at.quaternion);
-    return 0;
+    *to = (poses_event){.kind = POSES_POSE, .line = k->line};
+    if (k->count != TUM_WORDS)
+        return keyfile_error(k, e, "%d words; expected " TUM_LINE ", method NAME, or set KEY VALUE", k->count);
+    return tum_take(k, &to->time, &to->at, e);
 }
 
 static bool is_control(const keyfile *k)
@@ -92,7 +86,7 @@ static int next_frame(poses *p, poses_event *to, err *e)
     int more = plus_next(&p->frames, &to->time, &to->line, m, e);
     if (more <= 0)
         return more;
-    bool image = !strcmp(p->frames.from, "Image");
+    bool image = !p->marker && !strcmp(p->frames.from, "Image");
     if (image && !p->frames.width)
         return err_set(e, place(p), to->line,
                        "the width of the images is not known; expected DimSize before the frames");
