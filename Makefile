@@ -30,7 +30,7 @@ COLLIDE = -lccd
 WEB = -lcivetweb -lturbojpeg
 
 TOOLS = voxelise attach bind tled-run msds-mesh msds-run us-import us-segment us-surface us-slice \
-	sinew sinew-materials sinew-deform sinew-results sinew-info sinew-diff sinew-distance sinew-poses sinew-export sinew-import sinew-render sinew-console
+	sinew sinew-materials sinew-deform sinew-results sinew-info sinew-diff sinew-distance sinew-poses sinew-register sinew-export sinew-import sinew-render sinew-console
 
 # `make V=1` shows whole commands.
 ifeq ($(V),1)
@@ -194,6 +194,7 @@ $(eval $(call tool,sinew-info,common/inspect/sinew-info.c $(INFO_MODULES)))
 $(eval $(call tool,sinew-diff,common/inspect/sinew-diff.c))
 $(eval $(call tool,sinew-distance,common/inspect/sinew-distance.c $(DISTANCE_MODULES)))
 $(eval $(call tool,sinew-poses,$(PLAN_SRC)))
+$(eval $(call tool,sinew-register,common/place/sinew-register.c))
 $(eval $(call tool,sinew-export,common/exchange/sinew-export.c $(EXPORT_MODULES)))
 $(eval $(call tool,sinew-import,common/exchange/sinew-import.c $(IMPORT_MODULES)))
 $(eval $(call tool,sinew-render,common/render/sinew-render.c $(RENDER_MODULES),$$(EMBREE) $$(PICTURES)))
