@@ -106,7 +106,7 @@ static double fit(const fitting *f, double sign, pose *at, double *left)
 
 static int check_fit(const registration *r, double mirrored, double other, const char *place, err *e)
 {
-    if (r->fre > MIRRORS_AT * r->spread && mirrored < MIRRORED * r->fre)
+    if (r->fre > MIRRORS_AT * r->spread && mirrored < MIRRORED * r->fre && mirrored <= NO_FIT * r->spread)
         return err_set(
             e, place, 0,
             "the points fit their partners better mirrored: %.3g mm (rms) are left, and %.3g mm as they are; "
