@@ -1,7 +1,7 @@
-/* ITK's text files of transforms, as 3D Slicer saves one as .tfm. Such a file is in LPS and mm, and made for resampling:
- * it takes a place of the parent to one of the child, so it holds the inverse of what Slicer shows. This gives what
- * Slicer shows: for a marker the numbers themselves, as its frames are neither LPS nor RAS; for a body, whose model is
- * in LPS, the motion in LPS. It keeps nothing.
+/* ITK's text files of transforms, as 3D Slicer saves one as .tfm. Such a file is in LPS and mm, and made for
+ * resampling: it takes a place of the parent to one of the child, so it holds the inverse of what Slicer shows. This
+ * gives what Slicer shows: for a marker the numbers themselves, as its frames are neither LPS nor RAS; for a body,
+ * whose model is in LPS, the motion in LPS. It keeps nothing.
  */
 #ifndef SINEW_ITK_H
 #define SINEW_ITK_H

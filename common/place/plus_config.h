@@ -1,8 +1,8 @@
 /* The transforms of a PLUS configuration: <CoordinateDefinitions><Transform From="Image" To="Probe" Matrix="..."/>, in
  * mm. Probe is what PLUS calls the marker on the probe. A transform that the file does not have itself is made of those
- * that it has, and of their inverses. From TransducerOrigin (or its pixels), the middle of the array on an image whose x
- * goes along its columns and whose y goes down, it becomes the probe's own frame; all else is taken as it is. It keeps
- * nothing.
+ * that it has, and of their inverses. From TransducerOrigin (or its pixels), the middle of the array on an image whose
+ * x goes along its columns and whose y goes down, it becomes the probe's own frame; all else is taken as it is. It
+ * keeps nothing.
  */
 #ifndef SINEW_PLUS_CONFIG_H
 #define SINEW_PLUS_CONFIG_H

@@ -1,6 +1,6 @@
-/* Points that people picked, and their names, from a file: Slicer's .fcsv, whose header says in which axes it is, in mm;
- * or text, a point a line, `x y z` or `NAME x y z`, whose unit the caller knows. And which points of two files are the
- * same. The owner frees them.
+/* Points that people picked, and their names, from a file: Slicer's .fcsv, whose header says in which axes it is, in
+ * mm; or text, a point a line, `x y z` or `NAME x y z`, whose unit the caller knows. And which points of two files are
+ * the same. The owner frees them.
  */
 #ifndef SINEW_POINTS_H
 #define SINEW_POINTS_H

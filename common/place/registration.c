@@ -14,8 +14,8 @@
 /* m: what no tracker sees. */
 #define FAR 1e6
 
-/* What is left of a fit, as a part of the points' spread: more is none. And a mirrored fit that leaves this part of it is
- * the right one, where there is something to be told apart. */
+/* What is left of a fit, as a part of the points' spread: more is none. And a mirrored fit that leaves this part of it
+ * is the right one, where there is something to be told apart. */
 #define NO_FIT     0.2
 #define MIRRORED   0.5
 #define MIRRORS_AT 0.01

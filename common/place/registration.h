@@ -19,8 +19,8 @@ typedef struct registration {
     double spread;               /* m: rms distance from the middle */
 } registration;
 
-/* from, to: count x 3, m; left: count x 3, m, gets what each pair is apart: from, moved, to `to`. place: for messages. -1
- * with e filled: fewer than three pairs, points on a line, points that fit better mirrored, or that do not fit. */
+/* from, to: count x 3, m; left: count x 3, m, gets what each pair is apart: from, moved, to `to`. place: for messages.
+ * -1 with e filled: fewer than three pairs, points on a line, points that fit better mirrored, or that do not fit. */
 int registration_fit(const double *from, const double *to, int64_t count, const char *place, registration *r,
                      double *left, err *e);
 

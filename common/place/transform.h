@@ -1,5 +1,5 @@
-/* A rigid motion from a file that another program, or a person, wrote: how a probe's face stands on its marker, or where
- * a model lies in the frame that poses are in. What kind of file it is, its content says:
+/* A rigid motion from a file that another program, or a person, wrote: how a probe's face stands on its marker, or
+ * where a model lies in the frame that poses are in. What kind of file it is, its content says:
  *
  *     a line `time tx ty tz qx qy qz qw`                   metres; the time is passed over
  *     four lines of four numbers, or one of 16             4 x 4, row by row, mm, as PLUS and 3D Slicer print it

@@ -36,9 +36,9 @@ int poses_take(const keyfile *k, poses_event *to, err *e);
  * first row; any other is taken as it is. */
 int poses_open(poses *p, in *source, const char *transform, err *e);
 
-/* The poses are of a marker on the probe, whose way to the face the caller knows: after poses_open. A sequence then gives
- * ProbeToReference or ProbeToTracker, where no transform was asked for, and every transform as it is, one from Image
- * too: its axes, without the size of pixels, at the middle of the first pixel. */
+/* The poses are of a marker on the probe, whose way to the face the caller knows: after poses_open. A sequence then
+ * gives ProbeToReference or ProbeToTracker, where no transform was asked for, and every transform as it is, one from
+ * Image too: its axes, without the size of pixels, at the middle of the first pixel. */
 void poses_of_marker(poses *p);
 
 /* The next event; of a control, its words are those of p->lines, and what they mean is the caller's to know. 1: there

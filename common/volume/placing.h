@@ -12,8 +12,8 @@ typedef struct placing {
     pose body, marker;
 } placing;
 
-/* Reads the files of the two options (NULL: not given; see body_open and place/transform.h). parts gets all of the body,
- * to be freed by body_free; NULL: only where the model lies is wanted. -1 with e filled. */
+/* Reads the files of the two options (NULL: not given; see body_open and place/transform.h). parts gets all of the
+ * body, to be freed by body_free; NULL: only where the model lies is wanted. -1 with e filled. */
 int placing_read(placing *p, const char *body_path, const char *marker_path, body *parts, err *e);
 
 /* The pose of the probe's face in the model. Without a body and a marker, to the byte what came. */

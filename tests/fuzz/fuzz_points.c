@@ -1,5 +1,5 @@
-/* Any bytes as a file of points: finite places and names that pair with themselves, or one error with a text; and whatever
- * points there are, a motion whose turn is of length 1, or one error. */
+/* Any bytes as a file of points: finite places and names that pair with themselves, or one error with a text; and
+ * whatever points there are, a motion whose turn is of length 1, or one error. */
 #include "place/points.h"
 #include "place/registration.h"
 

@@ -1,5 +1,5 @@
-/* Any bytes as a file of a rigid motion, for a marker and a body, with names of frames and without: a finite place and a
- * turn of length 1, or one error with a text. */
+/* Any bytes as a file of a rigid motion, for a marker and a body, with names of frames and without: a finite place and
+ * a turn of length 1, or one error with a text. */
 #include "place/transform.h"
 
 #include <math.h>

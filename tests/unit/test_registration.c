@@ -1,5 +1,5 @@
-/* Registration against theory and closed forms: motions that are found again; a thousand trials with noise, whose residuals
- * and errors at a target are those of Fitzpatrick et al. 1998; what is refused. And files of points. */
+/* Registration against theory and closed forms: motions that are found again; a thousand trials with noise, whose
+ * residuals and errors at a target are those of Fitzpatrick et al. 1998; what is refused. And files of points. */
 #include "place/points.h"
 #include "place/registration.h"
 

@@ -105,8 +105,8 @@ static void test_itk(void)
 #define MOTION "1 0 0 10\n  0 0 -1 20\n  0 1 0 30\n  0 0 0 1"
 #define MOVE   "1 0 0 100 0 1 0 200 0 0 1 300 0 0 0 1"
 
-/* Pixels of 0.1 mm by 0.2 mm; the middle of the array is at (256, 5). The image stands in the marker's frame so that its
- * columns go along y and its rows along -z, and its first pixel is at (1 2 3) mm. */
+/* Pixels of 0.1 mm by 0.2 mm; the middle of the array is at (256, 5). The image stands in the marker's frame so that
+ * its columns go along y and its rows along -z, and its first pixel is at (1 2 3) mm. */
 #define IMAGES                                                                                                         \
     LINK("Image", "TransducerOriginPixel", "1 0 0 -256 0 1 0 -5 0 0 1 0 0 0 0 1")                                      \
     LINK("TransducerOriginPixel", "TransducerOrigin", ".1 0 0 0 0 .2 0 0 0 0 .2 0 0 0 0 1")                            \
