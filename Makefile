@@ -30,7 +30,7 @@ COLLIDE = -lccd
 WEB = -lcivetweb -lturbojpeg
 
 TOOLS = voxelise attach bind tled-run msds-mesh msds-run us-import us-segment us-surface us-slice \
-	sinew sinew-materials sinew-deform sinew-results sinew-info sinew-diff sinew-distance sinew-poses sinew-export sinew-import sinew-render sinew-console
+	sinew sinew-materials sinew-deform sinew-results sinew-info sinew-diff sinew-distance sinew-poses sinew-register sinew-export sinew-import sinew-render sinew-console
 
 # `make V=1` shows whole commands.
 ifeq ($(V),1)
@@ -43,7 +43,7 @@ endif
 MAIN_SRC := common/cli/tool.c common/cli/progress.c
 MAIN_OBJ := $(MAIN_SRC:%.c=$(BUILD)/%.o)
 LINK_LIB := $(addprefix common/link/,address.c socket.c igtl.c igtl_content.c igtl_reader.c)
-LIB_SRC := $(filter-out $(MAIN_SRC) common/cli/sinew.c common/results/sinew-results.c common/render/sinew-render.c common/render/render_%,$(wildcard common/base/*.c common/physics/*.c common/cli/*.c common/model/*.c common/surface/*.c common/mesh/*.c common/volume/*.c common/probe/*.c common/live/*.c $(LINK_LIB) common/solve/*.c common/picture/*.c common/results/*.c common/render/*.c))
+LIB_SRC := $(filter-out $(MAIN_SRC) common/cli/sinew.c common/results/sinew-results.c common/render/sinew-render.c common/place/sinew-register.c common/render/render_%,$(wildcard common/base/*.c common/physics/*.c common/cli/*.c common/model/*.c common/surface/*.c common/mesh/*.c common/place/*.c common/volume/*.c common/probe/*.c common/live/*.c) $(LINK_LIB) $(wildcard common/solve/*.c common/picture/*.c common/results/*.c common/render/*.c))
 LIB_OBJ := $(LIB_SRC:%.c=$(BUILD)/%.o)
 LIB := $(BUILD)/libsinew.a
 
@@ -195,6 +195,7 @@ $(eval $(call tool,sinew-info,common/inspect/sinew-info.c $(INFO_MODULES)))
 $(eval $(call tool,sinew-diff,common/inspect/sinew-diff.c))
 $(eval $(call tool,sinew-distance,common/inspect/sinew-distance.c $(DISTANCE_MODULES)))
 $(eval $(call tool,sinew-poses,$(PLAN_SRC)))
+$(eval $(call tool,sinew-register,common/place/sinew-register.c))
 $(eval $(call tool,sinew-export,common/exchange/sinew-export.c $(EXPORT_MODULES)))
 $(eval $(call tool,sinew-import,common/exchange/sinew-import.c $(IMPORT_MODULES)))
 $(eval $(call tool,sinew-render,common/render/sinew-render.c $(RENDER_MODULES),$$(EMBREE) $$(PICTURES)))

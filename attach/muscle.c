@@ -1,12 +1,12 @@
 #include "muscle.h"
 
-#include "attach/shape/principal.h"
 #include "base/mem.h"
 #include "cli/listing.h"
 #include "fibre_rule.h"
 #include "mesh/lattice.h"
 #include "muscle_body.h"
 #include "muscle_surface.h"
+#include "place/principal.h"
 
 #include <float.h>
 #include <math.h>

@@ -1,9 +1,9 @@
 #include "muscle_shape.h"
 
-#include "attach/shape/principal.h"
 #include "base/mem.h"
 #include "fibre_field.h"
 #include "mesh/lattice.h"
+#include "place/principal.h"
 #include "surface/triangle_tree.h"
 
 #include <float.h>

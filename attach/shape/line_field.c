@@ -1,7 +1,7 @@
 #include "attach/shape/line_field.h"
 
-#include "attach/shape/principal.h"
 #include "base/mem.h"
+#include "place/principal.h"
 #include "surface/triangle_tree.h"
 
 #include <math.h>

@@ -1,6 +1,6 @@
 #include "attach/shape/ring.h"
 
-#include "attach/shape/principal.h"
+#include "place/principal.h"
 
 #include <math.h>
 #include <string.h>

@@ -328,6 +328,23 @@ int num_list(const char *text, double *list, int most)
     return n;
 }
 
+static bool is_white(char c)
+{
+    return c == ' ' || c == '\t' || c == '\n' || c == '\r';
+}
+
+int num_words(const char *text, const char *end, double *list, int most)
+{
+    int n = 0;
+    for (; text < end; text++) {
+        if (is_white(*text))
+            continue;
+        if (n == most || num_scan(text, end, &text, &list[n++]) || (text < end && !is_white(*text)))
+            return -1;
+    }
+    return n;
+}
+
 int num_text(double value, bool single, char *to)
 {
     if (isnan(value))

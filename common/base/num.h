@@ -63,6 +63,10 @@ int num_lengths_of(const char *text, num_length *list, int most);
 /* A list of numbers between commas, at most `most`. Returns how many, or -1. */
 int num_list(const char *text, double *list, int most);
 
+/* Numbers between white space, from text up to end, at most `most`. Returns how many, or -1 where it is not all
+ * numbers, or more. */
+int num_words(const char *text, const char *end, double *list, int most);
+
 /* The shortest text that reads back as the same double (single: as the same float), C locale; to holds at least
  * NUM_TEXT bytes. "nan" has no sign. Returns its length. */
 int num_text(double value, bool single, char *to);

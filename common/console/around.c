@@ -29,10 +29,7 @@ static int read_places(body *b, const console_case *is, err *e)
 {
     if (!is->body)
         return place_plainly(b, is, e);
-    in *s = in_open(is->body, e);
-    const int failed = s ? body_read(b, s, e) : -1;
-    in_close(s);
-    return failed;
+    return body_open(b, is->body, e);
 }
 
 /* One that the model has already stays as it is there. */

@@ -12,9 +12,6 @@
 
 typedef enum poses_kind { POSES_POSE, POSES_CONTROL } poses_kind;
 
-/* How far from 0 the cosine between a matrix's axes may be. */
-#define POSES_COSINE 0.001
-
 typedef struct poses_event {
     poses_kind kind;
     int64_t line;
@@ -23,6 +20,7 @@ typedef struct poses_event {
 } poses_event;
 
 typedef struct poses {
+    bool marker; /* what is read is of a marker: see poses_of_marker */
     keyfile lines;
     bool sequence; /* PLUS */
     plus frames;
@@ -37,6 +35,11 @@ int poses_take(const keyfile *k, poses_event *to, err *e);
  * ProbeToTracker. An image's frame (columns, rows, normal; pixels) becomes a probe's at the middle of its
  * first row; any other is taken as it is. */
 int poses_open(poses *p, in *source, const char *transform, err *e);
+
+/* The poses are of a marker on the probe, whose way to the face the caller knows: after poses_open. A sequence then
+ * gives ProbeToReference or ProbeToTracker, where no transform was asked for, and every transform as it is, one from
+ * Image too: its axes, without the size of pixels, at the middle of the first pixel. */
+void poses_of_marker(poses *p);
 
 /* The next event; of a control, its words are those of p->lines, and what they mean is the caller's to know. 1: there
  * is one; 0: the end; -1: e filled, with the line: what is not a number or not finite, a quaternion that is not of

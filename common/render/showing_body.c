@@ -70,11 +70,9 @@ int showing_body(showing *b, const model *m, const showing_want *want, err *e)
     body all = {0};
     if (!want->body)
         return 0;
-    in *s = in_open(want->body, e);
-    int failed = s ? body_read(&all, s, e) : -1;
+    int failed = body_open(&all, want->body, e);
     for (int i = 0; !failed && i < all.parts; i++)
         failed = show_part(b, m, want, &all, &all.part[i], e);
-    in_close(s);
     body_free(&all);
     return failed;
 }

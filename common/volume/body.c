@@ -5,6 +5,7 @@
 #include "base/num.h"
 #include "base/path.h"
 #include "base/pose.h"
+#include "place/transform.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -127,12 +128,11 @@ static int take_line(body *b, keyfile *k, bool *placed, err *e)
     return 0;
 }
 
-int body_read(body *b, in *s, err *e)
+static int read_words(body *b, in *s, err *e)
 {
     keyfile k;
     int got;
     bool placed = false;
-    *b = (body){.volume = pose_none()};
     keyfile_open(&k, s);
     while ((got = keyfile_next(&k, e)) > 0)
         if (take_line(b, &k, &placed, e)) {
@@ -144,6 +144,42 @@ int body_read(body *b, in *s, err *e)
     else
         place_parts(b);
     return got;
+}
+
+static int read_bytes(body *b, const transform_file *f, err *e)
+{
+    if (f->frames || transform_is(f->bytes, f->size))
+        return transform_read(f, &b->volume, e);
+    in *s = in_memory(f->bytes, (size_t)f->size, f->name, e);
+    const int failed = s ? read_words(b, s, e) : -1;
+    in_close(s);
+    return failed;
+}
+
+int body_read(body *b, in *s, const char *frames, err *e)
+{
+    char *bytes = NULL;
+    transform_file f = {.name = in_name(s), .frames = frames, .use = TRANSFORM_BODY};
+    *b = (body){.volume = pose_none()};
+    if (in_peek(s, e) == -2) /* steps over a byte order mark */
+        return -1;
+    f.size = in_all(s, &bytes, e);
+    f.bytes = bytes;
+    const int failed = f.size < 0 ? -1 : read_bytes(b, &f, e);
+    free(bytes);
+    return failed;
+}
+
+int body_open(body *b, const char *path, err *e)
+{
+    const char *frames;
+    *b = (body){.volume = pose_none()};
+    char *file = transform_path(path, &frames, e);
+    in *s = file ? in_open(file, e) : NULL;
+    const int failed = s ? body_read(b, s, frames, e) : -1;
+    in_close(s);
+    free(file);
+    return failed;
 }
 
 const body_part *body_find(const body *b, const char *path)

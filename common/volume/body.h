@@ -32,8 +32,13 @@ typedef struct body {
     int64_t room; /* for parts */
 } body;
 
-/* -1 with e filled: file and line. */
-int body_read(body *b, in *s, err *e);
+/* Reads such a file, or any of those of place/transform.h, which say where the volume is alone. frames: see there. -1
+ * with e filled: file and line. */
+int body_read(body *b, in *s, const char *frames, err *e);
+
+/* The same of the file at a path, which may be FILE:FROMToTO. */
+int body_open(body *b, const char *path, err *e);
+
 void body_free(body *b);
 
 /* The part whose file has the name of this path's; NULL: there is none. */

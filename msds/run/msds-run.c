@@ -17,7 +17,7 @@ static int take_poses(session *s, poses *p, err *e)
     poses_event at;
     int got;
     while ((got = poses_next(p, &at, e)) > 0) {
-        const pose here = session_place(s, &at.at);
+        const pose here = placing_of(&s->placing, &at.at);
         const frame_input from = solve_frame_input(s, at.time, &here, at.line);
         if (at.kind == POSES_CONTROL ? settings_take(s, &p->lines, e) : solve_frame(s, &from, e))
             return -1;
@@ -39,7 +39,10 @@ static int simulate(session *s, err *e)
     if (!source)
         return -1;
     s->source = in_name(source);
-    const int failed = poses_open(&p, source, s->o->transform, e) || take_poses(s, &p, e);
+    int failed = poses_open(&p, source, s->o->transform, e);
+    if (!failed && s->o->marker)
+        poses_of_marker(&p);
+    failed = failed || take_poses(s, &p, e);
     in_close(source);
     return failed ? -1 : 0;
 }
@@ -61,9 +64,9 @@ static int check_live(const struct options *o, err *e)
 
 static int check_replay(const struct options *o, err *e)
 {
-    if (o->live || o->poses || o->control || o->record || o->compare)
-        return err_usage(e, "--replay with --live, --poses, --control, --record or --compare; expected it alone: what "
-                            "came live is in the record");
+    if (o->live || o->poses || o->marker || o->control || o->record || o->compare)
+        return err_usage(e, "--replay with --live, --poses, --marker, --control, --record or --compare; expected it "
+                            "alone: what came live is in the record, with poses as they were used");
     return 0;
 }
 
@@ -71,6 +74,8 @@ static int check_options(const struct options *o, err *e)
 {
     if (o->replay)
         return check_replay(o, e);
+    if (o->marker && !o->poses)
+        return err_usage(e, "--marker without --poses, which are of the marker; expected both");
     if (o->live)
         return check_live(o, e);
     if (!o->poses)

@@ -68,7 +68,7 @@ static bool take_pose(live *l)
     }
     l->pose = newest;
     l->has_pose = true;
-    l->pose.at = session_place(l->s, &newest.at);
+    l->pose.at = placing_of(&l->s->placing, &newest.at);
     return true;
 }
 

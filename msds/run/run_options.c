@@ -18,6 +18,8 @@ static const opt option_list[] = {
      "poses: TUM lines or a PLUS sequence; with --live a FIFO"},
     {OPT_INPUT, 0, "transform", "NAME", OPT_TEXT, TO(transform), 0, 0, NULL, 0, "which transform of a PLUS sequence"},
     {OPT_INPUT, 0, "body", "FILE", OPT_TEXT, TO(body), 0, 0, NULL, OPT_FILE, "where the model lies for --poses"},
+    {OPT_INPUT, 0, "marker", "FILE", OPT_TEXT, TO(marker), 0, 0, NULL, OPT_FILE,
+     "where the probe's face is on the marker that --poses are of"},
     {OPT_INPUT, 0, "live", NULL, OPT_FLAG, TO(live), 0, 0, NULL, OPT_OUTPUT,
      "take poses as they come, frames at --rate"},
     {OPT_INPUT, 0, "control", "FILE", OPT_TEXT, TO(control), 0, 0, NULL, OPT_OUTPUT | OPT_FILE,

@@ -2,7 +2,6 @@
 
 #include "probe/probe_carry.h"
 #include "surface/scale.h"
-#include "volume/body.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -235,25 +234,11 @@ static int choose_device(session *s, err *e)
     return s->threads ? 0 : -1;
 }
 
-static int read_body(session *s, err *e)
-{
-    if (!s->o->body)
-        return 0;
-    in *source = in_open(s->o->body, e);
-    const int failed = source ? body_read(&s->around, source, e) : -1;
-    in_close(source);
-    return failed;
-}
-
-pose session_place(const session *s, const pose *at)
-{
-    return s->o->body ? pose_relative(&s->around.volume, at) : *at;
-}
-
 int session_prepare(session *s, err *e)
 {
     const struct options *o = s->o;
-    if (read_body(s, e) || read_probe(s, e) || carry_skin(s, e) || make_problem(s, e) || choose_device(s, e))
+    if (placing_read(&s->placing, s->o->body, s->o->marker, &s->around, e) || read_probe(s, e) || carry_skin(s, e) ||
+        make_problem(s, e) || choose_device(s, e))
         return -1;
     s->last_fem = methods_with(METHOD_FEM, o->exact, o->warp);
     session_method(s, (method_word)o->method);

@@ -16,6 +16,7 @@
 #include "msds/run/press.h"
 #include "msds/run/run_options.h"
 #include "msds/run/skin_model.h"
+#include "volume/placing.h"
 
 enum { MASS_STABLE, MASS_LUMPED, SESSION_TEXTS = 16 };
 
@@ -63,7 +64,8 @@ typedef struct session {
     method_word last_fem; /* the last but springs: what springs are compared with */
     press_moves moves;    /* of the last frame, and its plan */
     msds_plan plan;
-    body around;          /* of --body, that poses are relative to; empty where there is none */
+    placing placing;      /* of --body and --marker */
+    body around;          /* of --body; empty where there is none */
     msds_reading reading; /* of the last frame */
     int64_t next_frame;
     progress progress;
@@ -95,9 +97,6 @@ int session_start(session *s, err *e);
 
 /* Takes over the options, of which some of one part have changed, from the next frame on. */
 int session_change(session *s, session_part part, err *e);
-
-/* A pose in the body, where one was given, as one in the model. */
-pose session_place(const session *s, const pose *at);
 
 /* Refuses friction with a method that has none: -1 with e filled (status 2). */
 int session_slides(const session *s, method_word method, double friction, err *e);

@@ -72,7 +72,7 @@ static void make_parts(const slice_session *s, parts *p)
         s->o.rigid ? 0 : checksum_of_array(checksum_of_array(0, m, "element.node"), m, "node.position");
     snprintf(p->text[0], PART, "%dx%d", (int)s->view.size.columns, (int)s->view.size.rows);
     snprintf(p->text[1], PART, "%s", s->o.method ? "paper" : "spans");
-    put_place(&s->place, p->text[2]);
+    put_place(&s->placing.body, p->text[2]);
     put_checksum(!s->o.rigid, crc, p->text[3]);
     put_checksum(s->o.labels, s->labels_crc, p->text[4]);
     snprintf(p->text[5], PART, "0x%08" PRIx32 ",%.17g,%.17g", s->volume_crc, s->window.low, s->window.high);
@@ -189,7 +189,7 @@ static void take_pose(live *l)
 {
     if (!take_newest(l) || l->s->frozen)
         return;
-    l->from = pose_relative(&l->s->place, &l->next.at);
+    l->from = placing_of(&l->s->placing, &l->next.at);
     l->has_pose = l->is_new = true;
     l->came = fmax(l->came, l->next.came);
     l->has_next = false;

@@ -14,6 +14,8 @@ static const opt option_list[] = {
     {OPT_INPUT, 0, "transform", "NAME", OPT_TEXT, TO(transform), 0, 0, NULL, 0, "which transform of a PLUS sequence"},
     {OPT_INPUT, 0, "rigid", NULL, OPT_FLAG, TO(rigid), 0, 0, NULL, 0, "read no model: the volume is not deformed"},
     {OPT_INPUT, 0, "body", "FILE", OPT_TEXT, TO(body), 0, 0, NULL, OPT_FILE, "where the volume lies for --poses"},
+    {OPT_INPUT, 0, "marker", "FILE", OPT_TEXT, TO(marker), 0, 0, NULL, OPT_FILE,
+     "where the probe's face is on the marker that --poses are of"},
     {OPT_RESULT, 0, "size", "COLUMNSxROWS", OPT_TEXT, TO(size), 0, 0, NULL, 0,
      "one side alone: to scale [pixels; default 512 columns]"},
     {OPT_ACTION, 0, "probe", "SHAPE", OPT_TEXT, TO(probe), 0, 0, "linear:|curved:|phased:", 0,
@@ -110,6 +112,10 @@ int slice_options_check(const slice_options *o, err *e)
         return err_usage(e, "--cut with --rigid: there are no tetrahedra to cut");
     if (o->body && !o->poses && !o->replay)
         return err_usage(e, "--body without --poses, whose frame it is; poses in frames are in the volume's");
+    if (o->marker && o->replay)
+        return err_usage(e, "--marker with --replay: the record has the poses as they were used; expected one of them");
+    if (o->marker && !o->poses)
+        return err_usage(e, "--marker without --poses, which are of the marker; poses in frames are of the face");
     if (o->transform && !o->poses)
         return err_usage(e, "--transform without --poses");
     if (slice_options_values(o, e))

@@ -8,7 +8,7 @@ typedef struct slice_options {
     opt_common common;
     bool rigid, live, force;
     int method;
-    const char *poses, *transform, *body, *size, *probe, *labels, *cut, *thickness, *control, *record, *replay;
+    const char *poses, *transform, *body, *marker, *size, *probe, *labels, *cut, *thickness, *control, *record, *replay;
     opt_lengths depth, width, coupling;
     opt_numbers tgc, range, window;
     double gain;

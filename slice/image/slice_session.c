@@ -6,7 +6,6 @@
 #include "live/stop.h"
 #include "slice/image/slice_cut.h"
 #include "slice/image/slice_files.h"
-#include "volume/body.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -220,22 +219,6 @@ static slice_cutter *make_cutter(const slice_session *s, const slice_view *view,
     return lanes ? slice_cutter_make(&setup, e) : NULL;
 }
 
-static int read_body(slice_session *s, err *e)
-{
-    body b;
-    s->place = pose_none();
-    if (!s->o.body)
-        return 0;
-    in *from = in_open(s->o.body, e);
-    const int failed = from ? body_read(&b, from, e) : -1;
-    in_close(from);
-    if (failed)
-        return -1;
-    s->place = b.volume;
-    body_free(&b);
-    return 0;
-}
-
 /* What is drawn with, once the volume and the model are there. */
 static int make_tools(slice_session *s, err *e)
 {
@@ -271,8 +254,8 @@ int slice_session_open(slice_session *s, const slice_options *o, const tool *t, 
     *s = (slice_session){.t = t, .o = *o};
     const int threads = tool_threads(t, e);
     s->threads = threads > 0 ? pool_create(threads, e) : NULL;
-    if (!s->threads || slice_options_thickness(&s->o, &s->thick, &s->slices, e) || read_body(s, e) ||
-        open_streams(s, path, e) || make_view(s, e))
+    if (!s->threads || slice_options_thickness(&s->o, &s->thick, &s->slices, e) ||
+        placing_read(&s->placing, s->o.body, s->o.marker, NULL, e) || open_streams(s, path, e) || make_view(s, e))
         return -1;
     if (!s->o.rigid && slice_mesh_of(&s->mesh, &s->model.body, &s->cells, source_name(&s->model), e))
         return -1;
@@ -432,10 +415,10 @@ static int write_cut(slice_session *s, const slice_plane *at, int64_t index, err
 /* Where the image is in the frame that the poses are in. */
 static slice_plane placed(const slice_session *s, const slice_plane *at)
 {
-    pose turn = s->place;
+    pose turn = s->placing.body;
     slice_plane p = {0};
     memset(turn.position, 0, sizeof turn.position);
-    pose_apply(&s->place, at->origin, p.origin);
+    pose_apply(&s->placing.body, at->origin, p.origin);
     pose_apply(&turn, at->column, p.column);
     pose_apply(&turn, at->row, p.row);
     return p;

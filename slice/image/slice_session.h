@@ -13,6 +13,7 @@
 #include "slice/image/slice_overlay.h"
 #include "slice/image/slice_view.h"
 #include "slice/image/slice_write.h"
+#include "volume/placing.h"
 
 enum { SLICE_WORD = 200 }; /* bytes of the text of a setting */
 
@@ -29,7 +30,7 @@ typedef struct slice_session {
     uint32_t volume_crc, labels_crc; /* of what was read, where a record wants to know */
     source model;
     slice_mesh mesh;
-    pose place; /* of the volume, in the frame that the poses are in */
+    placing placing; /* of --body and --marker */
     slice_view view;
     slice_cutter *cutter;
     slice_grey grey;

@@ -20,7 +20,11 @@ static int prepare(job *j, const slice_options *o, const tool *t, const char *pa
         return 0;
     j->pose_source = in_open(o->poses, e);
     j->more_poses = true;
-    return j->pose_source ? poses_open(&j->poses, j->pose_source, o->transform, e) : -1;
+    if (!j->pose_source || poses_open(&j->poses, j->pose_source, o->transform, e))
+        return -1;
+    if (o->marker)
+        poses_of_marker(&j->poses);
+    return 0;
 }
 
 /* Where poses come from, once the first is there: which transform a sequence gives, it says itself. */
@@ -50,7 +54,7 @@ static int next_pose(job *j, pose *to, err *e)
     if (got <= 0)
         return got;
     say_poses(j);
-    *to = pose_relative(&j->s.place, &at.at);
+    *to = placing_of(&j->s.placing, &at.at);
     return 1;
 }
 

@@ -57,6 +57,8 @@ same diff sinew diff "$T/tled-run" "$T/tled-run"
 same distance sinew distance --unit mm --both "$T/box.obj" "$T/box.obj"
 printf 'at vertex:1\npress 1mm .1\n' >"$T/plan"
 same poses sinew poses --surface "$T/box.obj" --unit mm "$T/plan"
+printf '0 0 0\n40 0 0\n0 30 0\n0 0 20\n' >"$T/points"
+same register sinew register -q --unit mm "$T/points" "$T/points"
 same export sinew export -f inp
 same render sinew render --size 180x120 --sheet rest,voxels,deformed
 same render-body sinew render --size 180x120 --show voxels,muscles,rigid --clear voxels --colour strain

@@ -70,6 +70,8 @@ clean 1 sinew-diff sinew-diff "$T/tled-run-double" "$T/tled-run-single"
 clean 0 sinew-distance sinew-distance -q --unit mm --both --points "$T/points" --region "all=$T/box.obj" "$T/box.obj" "$T/cube.obj"
 printf 'at surface:0,0,0\npress 1 .1\nmove vertex:1 into x columns y .1\n' >"$T/in"
 clean 0 sinew-poses sinew-poses -q --unit mm --surface "$T/box.obj"
+printf 'a 0 0 0\nb 40 0 0\nc 0 30 0\nd 0 0 20\n' >"$T/picked"
+clean 0 sinew-register sinew-register -q --unit mm --format tfm --residuals "$T/left" "$T/picked" "$T/picked"
 cp "$T/tled-run-double" "$T/in"
 for format in vtu inp msh obj 'model --text'; do
     # shellcheck disable=SC2086 # words

@@ -33,7 +33,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     err e = {0};
     body b;
     in *s = in_memory(data, size, "fuzz", &e);
-    if (s && !body_read(&b, s, &e)) {
+    if (s && !body_read(&b, s, NULL, &e)) {
         check_place(&b.volume);
         for (int i = 0; i < b.parts; i++) {
             check_place(&b.part[i].place);

@@ -23,7 +23,7 @@ static void check_pose(const poses_event *v, double last)
             abort();
 }
 
-static void read_all(const uint8_t *data, size_t size, const char *transform)
+static void read_all(const uint8_t *data, size_t size, const char *transform, bool marker)
 {
     err e = {0};
     poses p;
@@ -31,6 +31,8 @@ static void read_all(const uint8_t *data, size_t size, const char *transform)
     double last = -(double)INFINITY;
     in *s = in_memory(data, size, "fuzz", &e);
     int more = s ? poses_open(&p, s, transform, &e) : -1;
+    if (!more && marker)
+        poses_of_marker(&p);
     while (!more || more == 1) {
         more = poses_next(&p, &v, &e);
         if (more <= 0)
@@ -47,7 +49,9 @@ static void read_all(const uint8_t *data, size_t size, const char *transform)
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    read_all(data, size, NULL);
-    read_all(data, size, "ImageToTracker");
+    for (int marker = 0; marker < 2; marker++) {
+        read_all(data, size, NULL, marker);
+        read_all(data, size, "ImageToTracker", marker);
+    }
     return 0;
 }

@@ -36,7 +36,8 @@ static void make_session(slice_session *s, const tool *t, err *e)
     volume v, labels;
     make_volume(&v, e);
     make_volume(&labels, e);
-    *s = (slice_session){.t = t, .o = slice_options_default(), .place = pose_none(), .slices = 1, .labels = true};
+    *s =
+        (slice_session){.t = t, .o = slice_options_default(), .placing.body = pose_none(), .slices = 1, .labels = true};
     s->o.rigid = true;
     s->o.labels = "labels";
     strcpy(s->probe, "linear:2cm,1cm");

@@ -3,7 +3,7 @@
  */
 // needs: attach/muscle.c attach/attachment.c attach/fibre_rule.c attach/fibre_field.c
 // needs: attach/shape/laplace.c attach/shape/ring.c
-// needs: attach/shape/principal.c attach/muscle_shape.c attach/muscle_surface.c attach/shape/line_field.c
+// needs: attach/muscle_shape.c attach/muscle_surface.c attach/shape/line_field.c
 #include "attach/muscle.h"
 #include "attach/shape/line_field.h"
 #include "surface/surface.h"

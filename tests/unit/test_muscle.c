@@ -2,7 +2,7 @@
  */
 // needs: attach/rigid.c attach/muscle.c attach/attachment.c attach/fibre_rule.c
 // needs: attach/fibre_field.c attach/shape/laplace.c
-// needs: attach/shape/ring.c attach/shape/principal.c attach/muscle_shape.c attach/muscle_surface.c
+// needs: attach/shape/ring.c attach/muscle_shape.c attach/muscle_surface.c
 #include "attach/muscle.h"
 #include "attach/rigid.h"
 #include "surface/surface.h"

@@ -17,18 +17,20 @@ static int add_pose(collider *c, const poses_event *at, err *e)
     return 0;
 }
 
-int collider_read_poses(collider *c, const char *path, const pose *place, err *e)
+int collider_read_poses(collider *c, const char *path, const placing *of, err *e)
 {
     in *source = in_open(path, e);
     poses list = {.sequence = false};
     poses_event at;
     int got = source && !poses_open(&list, source, NULL, e) ? 1 : -1;
+    if (of && of->has_marker)
+        poses_of_marker(&list);
     while (got > 0 && (got = poses_next(&list, &at, e)) > 0) {
         if (at.kind != POSES_POSE)
             got = err_set(e, path, at.line,
                           "a line that changes the method; expected poses alone: methods are msds-run's");
-        if (place)
-            at.at = pose_relative(place, &at.at);
+        if (of)
+            at.at = placing_of(of, &at.at);
         if (got < 0 || add_pose(c, &at, e))
             got = -1;
     }

@@ -11,6 +11,7 @@
 
 #include "probe/probe.h"
 #include "tled/problem/state.h"
+#include "volume/placing.h"
 
 typedef struct collider {
     probe shape;
@@ -22,9 +23,9 @@ typedef struct collider {
     bool is_away;        /* live: no pose has come yet, so it presses on nothing */
 } collider;
 
-/* Reads all poses of a file, relative to `place`, if not NULL; c->shape is the caller's to read (probe_read). -1 with e
+/* Reads all poses of a file, placed as `of` says, if not NULL; c->shape is the caller's to read (probe_read). -1 with e
  * filled, c to be freed all the same. */
-int collider_read_poses(collider *c, const char *path, const pose *place, err *e);
+int collider_read_poses(collider *c, const char *path, const placing *of, err *e);
 void collider_free(collider *c);
 
 /* Makes it part of the problem, which says how stiff it is. */

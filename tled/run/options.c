@@ -53,6 +53,8 @@ static const opt option_list[] = {
      "unit of OBJ files: of the probe, of the script [default the model's]"},
     {OPT_INPUT, 0, "body", "FILE", OPT_TEXT, TO(body), 0, 0, NULL, OPT_FILE,
      "where the model lies for --poses and --rigid-poses"},
+    {OPT_INPUT, 0, "marker", "FILE", OPT_TEXT, TO(marker), 0, 0, NULL, OPT_FILE,
+     "where the probe's face is on the marker that --poses are of"},
     {OPT_INPUT, 0, "rigid-poses", "FILE", OPT_TEXT, TO(rigid_poses), 0, 0, NULL, OPT_FILE,
      "move rigid bodies: lines BODY time tx ty tz qx qy qz qw"},
     {OPT_INPUT, 0, "expressions", "FILE", OPT_TEXT, TO(expressions), 0, 0, NULL, OPT_FILE,

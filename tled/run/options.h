@@ -22,7 +22,7 @@ struct options {
     double checkpoint_every;
     bool live, force;
     double rate; /* below 0: not given */
-    const char *lines, *record, *replay, *body, *rigid_poses;
+    const char *lines, *record, *replay, *body, *marker, *rigid_poses;
     hourglass_control control; /* what hourglass says, once checked */
 };
 

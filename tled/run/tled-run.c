@@ -14,7 +14,7 @@
 #include "tled/run/tled_frame.h"
 #include "tled/run/tled_live.h"
 #include "tled/run/tled_words.h"
-#include "volume/body.h"
+#include "volume/placing.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -114,32 +114,15 @@ static int change_materials(session *s, const struct options *o, err *e)
     return result ? result : materials_set(&s->m, o->material.value, o->material.count, e);
 }
 
-/* Where the model lies in what poses are of. */
-static int read_place(const struct options *o, pose *to, err *e)
-{
-    body b;
-    *to = pose_none();
-    if (!o->body)
-        return 0;
-    in *source = in_open(o->body, e);
-    const int failed = source ? body_read(&b, source, e) : -1;
-    in_close(source);
-    if (failed)
-        return -1;
-    *to = b.volume;
-    body_free(&b);
-    return 0;
-}
-
 static int read_rigid_poses(session *s, const struct options *o, err *e)
 {
-    pose place;
+    placing of;
     if (!o->rigid_poses)
         return 0;
-    if (read_place(o, &place, e))
+    if (placing_read(&of, o->body, NULL, NULL, e))
         return -1;
     in *source = in_open(o->rigid_poses, e);
-    const int failed = source ? script_read_poses(&s->script, source, &s->m, &place, e) : -1;
+    const int failed = source ? script_read_poses(&s->script, source, &s->m, &of.body, e) : -1;
     in_close(source);
     return failed;
 }
@@ -355,12 +338,12 @@ static void end_checkpoints(session *s, err *e)
 
 static int read_poses(session *s, const struct options *o, err *e)
 {
-    pose place;
-    if (read_place(o, &place, e))
+    placing of;
+    if (placing_read(&of, o->body, o->marker, NULL, e))
         return -1;
     if (s->live)
-        return live_collider(s, &place, e);
-    return collider_read_poses(&s->collider, o->poses, o->body ? &place : NULL, e);
+        return live_collider(s, &of, e);
+    return collider_read_poses(&s->collider, o->poses, &of, e);
 }
 
 /* What presses, and where. Its stiffness is part of the stable step. */

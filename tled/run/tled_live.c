@@ -35,9 +35,9 @@ typedef struct shown {
 struct live {
     session *s;
     run_live run;
-    double rate; /* ticks a second */
-    double ramp; /* s: how long contact takes to come up */
-    pose body;   /* what poses are relative to */
+    double rate;     /* ticks a second */
+    double ramp;     /* s: how long contact takes to come up */
+    placing placing; /* of --body and --marker */
     live_clock clock;
     lines *lines;    /* NULL: no source, or a replay */
     record *record;  /* NULL: none */
@@ -59,11 +59,11 @@ struct live {
 
 static int check_sources(const struct options *o, err *e)
 {
-    if (o->replay && (o->poses || o->lines || o->body))
-        return err_usage(e, "--replay with --%s; expected the record alone, which has what came",
-                         o->poses   ? "poses"
-                         : o->lines ? "control"
-                                    : "body");
+    const char *came[] = {o->poses, o->lines, o->body, o->marker};
+    static const char *const names[] = {"poses", "control", "body", "marker"};
+    for (int i = 0; i < 4; i++)
+        if (o->replay && came[i])
+            return err_usage(e, "--replay with --%s; expected the record alone, which has what came", names[i]);
     if (o->lines && !o->live)
         return err_usage(e, "--control without --live; expected both, or --script for what changes in time");
     if (o->rate >= 0 && !o->live && !o->replay)
@@ -74,6 +74,8 @@ static int check_sources(const struct options *o, err *e)
         return err_usage(e, "--force without --record, which it lets write over a file; expected both");
     if (o->body && !o->poses && !o->rigid_poses)
         return err_usage(e, "--body without --poses or --rigid-poses, whose frame it is; expected both");
+    if (o->marker && !o->poses)
+        return err_usage(e, "--marker without --poses, which are of the marker; expected both");
     if (o->live && o->poses && o->lines && !strcmp(o->poses, o->lines))
         return err_usage(e,
                          "--poses and --control are both '%s'; expected one of them: either may have poses and "
@@ -115,7 +117,6 @@ int live_create(session *s, const struct options *o, err *e)
     s->live->s = s;
     s->live->rate = o->rate > 0 ? o->rate : usual_rate;
     s->live->ramp = o->ramp;
-    s->live->body = pose_none();
     return 0;
 }
 
@@ -132,9 +133,9 @@ void live_destroy(live *l)
     free(l);
 }
 
-int live_collider(session *s, const pose *place, err *e)
+int live_collider(session *s, const placing *of, err *e)
 {
-    s->live->body = *place;
+    s->live->placing = *of;
     return collider_begin_live(&s->collider, e);
 }
 
@@ -247,7 +248,7 @@ static void take_lines(live *l, const run_tick *at, bool *anew)
             record_control(l->record, &k);
     const bool posed = take_newest(l);
     if (posed && l->s->collider.poses) {
-        const pose to = pose_relative(&l->body, &l->pose.at);
+        const pose to = placing_of(&l->placing, &l->pose.at);
         take_pose(l, at, &to);
         l->came = l->pose.came;
     } else if (posed) {

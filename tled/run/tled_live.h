@@ -23,7 +23,7 @@ int64_t live_parts(const live *l);
 double live_ramp(const live *l);
 
 /* Before the problem is there: what the probe's motion needs; poses come relative to `place`. -1 with e filled. */
-int live_collider(session *s, const pose *place, err *e);
+int live_collider(session *s, const placing *of, err *e);
 
 /* Once it is there: curves for what may come, and steps of which a whole number is a tick. -1 with e filled. */
 int live_prepare(session *s, const struct options *o, err *e);

@@ -1,4 +1,4 @@
-#include "attach/shape/principal.h"
+#include "place/principal.h"
 
 #include <math.h>
 
