@@ -2,6 +2,7 @@
 
 #include "base/chars.h"
 #include "base/num.h"
+#include "base/space.h"
 
 #include <ctype.h>
 #include <inttypes.h>
@@ -229,40 +230,6 @@ static int read_frame(plus *p, err *e)
 
 /* ---- composing */
 
-static void product(const double a[16], const double b[16], double c[16])
-{
-    for (int i = 0; i < 4; i++)
-        for (int j = 0; j < 4; j++) {
-            c[4 * i + j] = 0;
-            for (int k = 0; k < 4; k++)
-                c[4 * i + j] += a[4 * i + k] * b[4 * k + j];
-        }
-}
-
-/* Of an affine transform. False: it has none. */
-static bool inverse(const double m[16], double to[16])
-{
-    double c[9];
-    for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++) {
-            int a = (i + 1) % 3, b = (i + 2) % 3, x = (j + 1) % 3, y = (j + 2) % 3;
-            c[3 * j + i] = m[4 * a + x] * m[4 * b + y] - m[4 * a + y] * m[4 * b + x];
-        }
-    double d = m[0] * c[0] + m[1] * c[3] + m[2] * c[6];
-    if (!(fabs(d) > 0) || !isfinite(d))
-        return false;
-    for (int i = 0; i < 3; i++) {
-        to[4 * i + 3] = 0;
-        for (int j = 0; j < 3; j++) {
-            to[4 * i + j] = c[3 * i + j] / d;
-            to[4 * i + 3] -= to[4 * i + j] * m[4 * j + 3];
-        }
-        to[12 + i] = 0;
-    }
-    to[15] = 1;
-    return true;
-}
-
 /* Frames of reference that are reached, each with what takes `from` to it. */
 typedef struct reached {
     int count;
@@ -283,12 +250,12 @@ static bool reach(reached *r, const plus_transform *t)
 {
     int from = find_reached(r, t->from), to = find_reached(r, t->to);
     double back[16];
-    if ((from < 0) == (to < 0) || (from < 0 && !inverse(t->m, back)))
+    if ((from < 0) == (to < 0) || (from < 0 && space_inverse(t->m, back)))
         return false;
     if (to < 0)
-        product(t->m, r->m[from], r->m[r->count]);
+        space_product(t->m, r->m[from], r->m[r->count]);
     else
-        product(back, r->m[to], r->m[r->count]);
+        space_product(back, r->m[to], r->m[r->count]);
     r->name[r->count++] = to < 0 ? t->to : t->from;
     return true;
 }

@@ -1,6 +1,7 @@
 #include "probe/poses.h"
 
 #include "base/num.h"
+#include "base/space.h"
 
 #include <ctype.h>
 #include <inttypes.h>
@@ -75,30 +76,6 @@ static int next_line(poses *p, poses_event *to, err *e)
 
 /* ---- sequences */
 
-/* The columns of a 4 x 4 matrix's rotation, made of length 1. -1: they are not at right angles, or left-handed. */
-static int take_axes(const double m[16], double axis[3][3])
-{
-    for (int j = 0; j < 3; j++) {
-        double square = 0;
-        for (int i = 0; i < 3; i++)
-            square += m[4 * i + j] * m[4 * i + j];
-        double length = sqrt(square);
-        if (!(length > 0) || !isfinite(length))
-            return -1;
-        for (int i = 0; i < 3; i++)
-            axis[j][i] = m[4 * i + j] / length;
-    }
-    for (int j = 0; j < 3; j++) {
-        const double *a = axis[j], *b = axis[(j + 1) % 3];
-        if (!(fabs(a[0] * b[0] + a[1] * b[1] + a[2] * b[2]) <= POSES_COSINE))
-            return -1;
-    }
-    const double *x = axis[0], *y = axis[1], *z = axis[2];
-    double volume =
-        x[0] * (y[1] * z[2] - y[2] * z[1]) + x[1] * (y[2] * z[0] - y[0] * z[2]) + x[2] * (y[0] * z[1] - y[1] * z[0]);
-    return volume > 0 ? 0 : -1;
-}
-
 /* An image's frame as a probe's: +x along the columns, +z along the rows (into the tissue), +y against its normal. */
 static void turn_image(double axis[3][3])
 {
@@ -111,7 +88,7 @@ static void turn_image(double axis[3][3])
 
 static int next_frame(poses *p, poses_event *to, err *e)
 {
-    double m[16], axis[3][3];
+    double m[16], axis[3][3], length[3];
     int more = plus_next(&p->frames, &to->time, &to->line, m, e);
     if (more <= 0)
         return more;
@@ -120,7 +97,7 @@ static int next_frame(poses *p, poses_event *to, err *e)
         return err_set(e, place(p), to->line,
                        "the width of the images is not known; expected DimSize before the frames");
     double middle = image ? (double)(p->frames.width - 1) / 2 : 0;
-    if (take_axes(m, axis))
+    if (space_axes(m, axis, length))
         return err_set(e, place(p), to->line, "%sTo%s is not a rotation; expected axes at right angles, right-handed",
                        p->frames.from, p->frames.to);
     for (int i = 0; i < 3; i++) {

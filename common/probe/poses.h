@@ -12,9 +12,6 @@
 
 typedef enum poses_kind { POSES_POSE, POSES_CONTROL } poses_kind;
 
-/* How far from 0 the cosine between a matrix's axes may be. */
-#define POSES_COSINE 0.001
-
 typedef struct poses_event {
     poses_kind kind;
     int64_t line;

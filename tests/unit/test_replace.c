@@ -3,10 +3,10 @@
  * where what has none gets none.
  */
 #define _GNU_SOURCE /* O_TMPFILE */
-#include "base/growing.h"
 #include "base/out.h"
 #include "base/outs.h"
 #include "base/temporary.h"
+#include "live/growing.h"
 
 #include "tap.h"
 

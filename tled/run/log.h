@@ -5,9 +5,9 @@
 #ifndef SINEW_LOG_H
 #define SINEW_LOG_H
 
-#include "base/growing.h"
 #include "base/out.h"
 #include "cli/opt.h"
+#include "live/growing.h"
 #include "model/model.h"
 #include "results/results.h"
 #include "tled/problem/script.h"

@@ -1,4 +1,4 @@
-#include "base/growing.h"
+#include "live/growing.h"
 
 #include "base/mem.h"
 #include "base/replace.h"
