@@ -58,6 +58,8 @@ same distance sinew distance --unit mm --both "$T/box.obj" "$T/box.obj"
 printf 'at vertex:1\npress 1mm .1\n' >"$T/plan"
 same poses sinew poses --surface "$T/box.obj" --unit mm "$T/plan"
 same export sinew export -f inp
+small sinew igtl-in --list .01 --listen 0 >"$T/small" 2>&1
+is "$? $(grep -c 'nothing has connected' "$T/small")" "1 1" "igtl-in"
 same render sinew render --size 180x120 --sheet rest,voxels,deformed
 same render-body sinew render --size 180x120 --show voxels,muscles,rigid --clear voxels --colour strain
 cp "$T/export" "$T/in"
