@@ -170,7 +170,8 @@ static int choose(track *k, double now, err *e)
     return 0;
 }
 
-static int take_pose(track *k, track_peer *from, const igtl_message *m, int i, double now, err *e)
+/* *taken: one of the message is heard already, of tools with one name. */
+static int take_pose(track *k, track_peer *from, const igtl_message *m, int i, double now, bool *taken, err *e)
 {
     static const char *const type[TRACK_KINDS] = {"TRANSFORM", "POSITION", "TDATA"};
     track_pose p;
@@ -185,18 +186,23 @@ static int take_pose(track *k, track_peer *from, const igtl_message *m, int i, d
         return 0;
     if (choose(k, now, e))
         return -1;
-    return is_chosen(k, &p) && is_heard(k, from, &p, now) ? take_chosen(k, &p, now, e) : 0;
+    if (*taken || !is_chosen(k, &p) || !is_heard(k, from, &p, now))
+        return 0;
+    *taken = true;
+    track_pose_status(m, &p);
+    return take_chosen(k, &p, now, e);
 }
 
 static int take_poses(track *k, track_peer *from, const igtl_message *m, double now, err *e)
 {
     int count;
+    bool taken = false;
     if (track_pose_count(m, &count, from->place, e)) {
         track_skip(k, e);
         return 0;
     }
     for (int i = 0; i < count; i++)
-        if (take_pose(k, from, m, i, now, e))
+        if (take_pose(k, from, m, i, now, &taken, e))
             return -1;
     return 0;
 }

@@ -35,8 +35,9 @@ static bool is_key(const igtl_meta *at, const char *begin, const char *end)
 /* The value, cut to `size` - 1 bytes and printable, of the first such key. */
 static bool find_meta(const igtl_message *m, const char *begin, const char *end, char *to, size_t size)
 {
+    igtl_meta at;
     for (int i = 0; i < m->metas; i++) {
-        const igtl_meta at = igtl_meta_at(m, i);
+        igtl_meta_step(m, i, &at);
         if (!is_key(&at, begin, end))
             continue;
         const size_t n = at.value_size < size - 1 ? at.value_size : size - 1;
@@ -48,8 +49,7 @@ static bool find_meta(const igtl_message *m, const char *begin, const char *end,
     return false;
 }
 
-/* What PLUS says of a transform: OK, MISSING, OUT_OF_VIEW, OUT_OF_VOLUME ... */
-static void read_status(const igtl_message *m, track_pose *to)
+void track_pose_status(const igtl_message *m, track_pose *to)
 {
     char status[24];
     const bool has = to->kind == TRACK_TOOLS ? find_meta(m, to->name, "Status", status, sizeof status)
@@ -119,7 +119,6 @@ int track_pose_read(const igtl_message *m, int i, track_pose *to, const char *pl
         find_meta(m, "IGTL_DEVICE_NAME", "", to->name, sizeof to->name);
     chars_tame(to->name);
     check_matrix(to);
-    read_status(m, to);
     return 0;
 }
 
