@@ -92,7 +92,7 @@ static void try_to_connect(track_net *n, track *k)
     n->next = now + n->pause;
     n->pause = n->pause * 2 < PAUSE_MOST ? n->pause * 2 : PAUSE_MOST;
     if (fd < 0) {
-        if (!n->told && !n->ended)
+        if (!n->told && !(n->ended > 0))
             track_warn(n->t, "%s; trying until it listens", e.text);
         n->told = true;
         return;
