@@ -117,13 +117,14 @@ listening = socket.create_server(('127.0.0.1', 0))
 print(listening.getsockname()[1], flush=True)
 for _ in range(2):
     peer = listening.accept()[0]
-    peer.sendall(struct.pack('>H12s20sQQQ', 1, b'STRING', b'Log', 0, 4, 0) + struct.pack('>HH', 3, 0))  # of no text; its checksum is not 0
-    peer.recv(1000)
+    peer.sendall(struct.pack('>H12s20sQQQ', 1, b'STRING', b'Log', 0, 4, 0) + struct.pack('>HH', 3, 0))  # its checksum is not 0
+    while peer.recv(1000):
+        pass
     peer.close()
 END
 python3 "$T/sends" >"$T/port" &
 while [ ! -s "$T/port" ]; do sleep .05; done
-clean 0 sinew-igtl-in sinew-igtl-in -q --list .5 "127.0.0.1:$(cat "$T/port")"
+clean 0 sinew-igtl-in sinew-igtl-in -q --list 2 "127.0.0.1:$(cat "$T/port")"
 wait
 
 # ---- What is refused is let go of too.
