@@ -70,7 +70,7 @@ $(BUILD)/tests/faults/wreck_card.so: tests/faults/wreck_card.cu
 	@mkdir -p $(@D)
 	$(call run,NVCC $<,$(NVCC) $(NVCC_FLAGS) -Xcompiler -fPIC -shared -o $@ $<)
 
-.PHONY: setup demo check check-all check-ci soak unit check-unit check-cli check-tests check-emulated check-slow check-soak check-live check-run1e6
+.PHONY: setup demo check check-all check-ci soak unit check-unit check-cli check-tests check-emulated check-slow check-soak check-live check-link check-run1e6
 setup:
 	.ci/setup check
 
@@ -169,6 +169,10 @@ check-slow: all unit
 # Runs with threads, and runs that are killed, are repeated a hundred times.
 check-soak: all unit $(UNIT_TEST)tled_emulated
 	$(ENVIRONMENT) SINEW_LONG=1 REPEATS=100 $(PROVE) $(SOAK)
+
+# OpenIGTLink, with Debian's library on the other side.
+check-link: all
+	$(ENVIRONMENT) $(PROVE) $(sort $(wildcard tests/link/*.t))
 
 # Live runs, each of so many seconds, and so many short ones that are recorded and replayed.
 LIVE_SECONDS ?= 20
@@ -430,6 +434,7 @@ help:
 	'make check-unit   the unit tests            make check-cli   the tests of the commands' \
 	'make check-tests  both, with the counts     make check-slow  slow tests, at their full length' \
 	'make check-emulated   kernels of CUDA on a card that the processor plays; it takes three minutes' \
+	'make check-link   poses, images and surfaces by OpenIGTLink, with a library that is not ours on the other side' \
 	'make check-live   live runs of LIVE_SECONDS=$(LIVE_SECONDS) each, and LIVE_SESSIONS=$(LIVE_SESSIONS) that are recorded and replayed' \
 	'make same WITH=FOLDER   what the outputs of this build differ in from those of the tools in FOLDER' \
 	'make lint         clang-format, shellcheck, manual pages, shape; and cppcheck and clang-tidy, which take minutes' \

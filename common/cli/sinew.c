@@ -44,6 +44,7 @@ static const struct {
     {MODELS, "import", "sinew-import", "a mesh from Abaqus .inp, Gmsh .msh, VTU"},
     {RESULTS, "render", "sinew-render", "pictures"},
     {SIMULATION, "console", "sinew-console", "a page in a browser on models that move live"},
+    {ULTRASOUND, "igtl-in", "sinew-igtl-in", "poses that other programs send by OpenIGTLink"},
 };
 
 enum { TOOLS = sizeof tools / sizeof *tools };

@@ -154,24 +154,27 @@ int igtl_read_body(igtl_message *m, const igtl_header *h, const unsigned char *b
     return 0;
 }
 
+void igtl_meta_step(const igtl_message *m, int i, igtl_meta *at)
+{
+    const unsigned char *head = m->meta_head + 2 + 8 * (size_t)i;
+    at->key = i ? at->value + at->value_size : (const char *)m->meta;
+    at->key_size = (size_t)big_endian_get(head, 2);
+    at->value_size = (size_t)big_endian_get(head + 4, 4);
+    at->value = at->key + at->key_size;
+}
+
 igtl_meta igtl_meta_at(const igtl_message *m, int i)
 {
-    const unsigned char *at = m->meta;
     igtl_meta to = {0};
-    for (int k = 0; k <= i; k++) {
-        const unsigned char *head = m->meta_head + 2 + 8 * k;
-        to.key_size = (size_t)big_endian_get(head, 2);
-        to.value_size = (size_t)big_endian_get(head + 4, 4);
-        to.key = (const char *)at;
-        to.value = (const char *)at + to.key_size;
-        at += to.key_size + to.value_size;
-    }
+    for (int k = 0; k <= i; k++)
+        igtl_meta_step(m, k, &to);
     return to;
 }
 
 unsigned char *igtl_add(igtl_buffer *b, int64_t size, err *e)
 {
-    if (MEM_ROOM(&b->at, &b->room, b->size + size, "a message", e))
+    const int64_t need = b->size + size;
+    if (MEM_ROOM(&b->at, &b->room, need + !need, "a message", e)) /* of no bytes too: NULL says that memory is short */
         return NULL;
     b->size += size;
     return b->at + b->size - size;

@@ -65,6 +65,9 @@ typedef struct igtl_meta {
 } igtl_meta;
 igtl_meta igtl_meta_at(const igtl_message *m, int i);
 
+/* From the metadata of index i - 1 to that of index i, at once; for 0, *at may be anything. */
+void igtl_meta_step(const igtl_message *m, int i, igtl_meta *at);
+
 /* Bytes to send, or a content on its way to be one. Zeroed: empty. */
 typedef struct igtl_buffer {
     unsigned char *at;

@@ -143,17 +143,43 @@ static int connect_to(const struct addrinfo *to, double until, int *code)
     return -1;
 }
 
-int socket_connect(const char *host, const char *digits, double seconds, err *e)
+/* The addresses of a host, which the caller frees; NULL with e filled. */
+static struct addrinfo *find_addresses(const char *host, const char *digits, const char *place, err *e)
 {
     const struct addrinfo hints = {.ai_socktype = SOCK_STREAM, .ai_flags = AI_ADDRCONFIG | AI_NUMERICSERV};
     struct addrinfo *list = NULL;
+    const int failed = getaddrinfo(host, digits, &hints, &list);
+    if (!failed)
+        return list;
+    err_set(e, place, 0, "no address is known: %s", gai_strerror(failed));
+    return NULL;
+}
+
+static void put_place(char place[SOCKET_HOST + 16], const char *host, const char *digits)
+{
+    snprintf(place, SOCKET_HOST + 16, strchr(host, ':') ? "[%s]:%s" : "%s:%s", host, digits);
+}
+
+int socket_known(const char *host, const char *digits, err *e)
+{
+    char place[SOCKET_HOST + 16];
+    put_place(place, host, digits);
+    struct addrinfo *list = find_addresses(host, digits, place, e);
+    if (!list)
+        return -1;
+    freeaddrinfo(list);
+    return 0;
+}
+
+int socket_connect(const char *host, const char *digits, double seconds, err *e)
+{
     char place[SOCKET_HOST + 16];
     const double until = clock_now() + seconds;
     int fd = -1, code = 0;
-    snprintf(place, sizeof place, strchr(host, ':') ? "[%s]:%s" : "%s:%s", host, digits);
-    const int failed = getaddrinfo(host, digits, &hints, &list);
-    if (failed)
-        return err_set(e, place, 0, "no address is known: %s", gai_strerror(failed));
+    put_place(place, host, digits);
+    struct addrinfo *list = find_addresses(host, digits, place, e);
+    if (!list)
+        return -1;
     for (const struct addrinfo *to = list; to && fd < 0; to = to->ai_next)
         fd = connect_to(to, until, &code);
     freeaddrinfo(list);

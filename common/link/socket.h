@@ -17,6 +17,9 @@ enum { SOCKET_HOST = 256 };
 /* Divides HOST:PORT, [HOST]:PORT or HOST, whose port is then `port`, as text. -1 with e filled (status 2). */
 int socket_name(const char *text, const char *option, int port, char host[SOCKET_HOST], char digits[8], err *e);
 
+/* Whether a host, by name or digits, has an address. -1 with e filled. */
+int socket_known(const char *host, const char *digits, err *e);
+
 /* Connects to a host by name or digits, each of its addresses in turn, within so many seconds in all. -1 with e
  * filled. */
 int socket_connect(const char *host, const char *digits, double seconds, err *e);

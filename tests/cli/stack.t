@@ -60,6 +60,8 @@ same poses sinew poses --surface "$T/box.obj" --unit mm "$T/plan"
 printf '0 0 0\n40 0 0\n0 30 0\n0 0 20\n' >"$T/points"
 same register sinew register -q --unit mm "$T/points" "$T/points"
 same export sinew export -f inp
+small sinew igtl-in --list .01 --listen 0 >"$T/small" 2>&1
+is "$? $(grep -c 'nothing has connected' "$T/small")" "1 1" "igtl-in"
 same render sinew render --size 180x120 --sheet rest,voxels,deformed
 same render-body sinew render --size 180x120 --show voxels,muscles,rigid --clear voxels --colour strain
 cp "$T/export" "$T/in"

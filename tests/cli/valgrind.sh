@@ -111,6 +111,24 @@ clean 0 us-import-dicom us-import -q tests/fuzz/seeds/dicom/deflated
 cp "$T/msds-run-msds" "$T/in"
 clean 0 us-slice us-slice -q --size 60x50 --labels "$T/us-segment" "$T/volume.nrrd"
 
+# ---- Poses of a program that sends them.
+: >"$T/in"
+cat >"$T/sends" <<'END'
+import socket, struct, sys
+listening = socket.create_server(('127.0.0.1', 0))
+print(listening.getsockname()[1], flush=True)
+for _ in range(2):
+    peer = listening.accept()[0]
+    peer.sendall(struct.pack('>H12s20sQQQ', 1, b'STRING', b'Log', 0, 4, 0) + struct.pack('>HH', 3, 0))  # its checksum is not 0
+    while peer.recv(1000):
+        pass
+    peer.close()
+END
+python3 "$T/sends" >"$T/port" &
+while [ ! -s "$T/port" ]; do sleep .05; done
+clean 0 sinew-igtl-in sinew-igtl-in -q --list 2 "127.0.0.1:$(cat "$T/port")"
+wait
+
 # ---- What is refused is let go of too.
 : >"$T/in"
 clean 1 nothing attach
