@@ -1,12 +1,12 @@
 /* sinew-deform: an OBJ as the results of a model move it. */
 #include "base/mem.h"
 #include "base/num.h"
-#include "base/outs.h"
 #include "base/pool.h"
 #include "bind/normals.h"
 #include "bind/pointcache.h"
 #include "cli/frames.h"
 #include "cli/numbered.h"
+#include "cli/outs.h"
 #include "cli/tool.h"
 #include "mesh/bone.h"
 #include "mesh/bound.h"

@@ -457,7 +457,7 @@ int import_vtu(import_mesh *m, in *s, const import_wishes *wishes, notes *warnin
                 .w = wishes,
                 .warnings = warnings,
                 .e = e,
-                .x = {.name = m->name, .text = text, .at = text, .end = text + size},
+                .x = {.name = m->name, .what = "VTK's XML", .text = text, .at = text, .end = text + size},
                 .points = -1};
     int bad = read_all(&r);
     free(r.arrays);

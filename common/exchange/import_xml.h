@@ -1,36 +1,10 @@
-/* The XML of VTK's files, and their arrays' data. Texts point into the file's bytes, which are the caller's and are not
- * changed; nothing here is kept but what a function says is the caller's to free.
+/* The data of arrays in VTK's XML. Texts point into the file's bytes, which are the caller's and are not changed;
+ * nothing here is kept but what a function says is the caller's to free.
  */
 #ifndef SINEW_IMPORT_XML_H
 #define SINEW_IMPORT_XML_H
 
-#include "base/err.h"
-
-#include <stddef.h>
-
-enum { XML_ATTRIBUTES = 24, XML_VALUE = 128 };
-
-typedef struct xml_tag {
-    char name[XML_VALUE]; /* "/X" where it closes X */
-    char key[XML_ATTRIBUTES][XML_VALUE], value[XML_ATTRIBUTES][XML_VALUE];
-    int count;
-    bool closed; /* <X/> */
-    const char *begin;
-} xml_tag;
-
-typedef struct xml {
-    const char *name; /* the file's, for messages */
-    const char *text, *at, *end;
-} xml;
-
-/* The next tag that is neither a comment nor a declaration: 1; 0: the end; -1 with e filled. */
-int xml_next(xml *x, xml_tag *tag, err *e);
-
-/* The value of an attribute, or NULL. */
-const char *xml_value(const xml_tag *tag, const char *key);
-
-/* The line of a place in the text. */
-int64_t xml_line(const xml *x, const char *at);
+#include "base/xml.h"
 
 /* How a file's arrays are stored. */
 typedef struct xml_style {

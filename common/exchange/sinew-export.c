@@ -1,8 +1,8 @@
 /* sinew-export: a model in the formats of other programs (VTU, Abaqus input, Gmsh, OBJ), or in either of its own. */
 #include "base/mem.h"
 #include "base/num.h"
-#include "base/outs.h"
 #include "cli/frames.h"
+#include "cli/outs.h"
 #include "cli/tool.h"
 #include "exchange/export_inp.h"
 #include "exchange/export_model.h"

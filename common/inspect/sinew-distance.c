@@ -1,5 +1,5 @@
 /* sinew-distance: how far two surfaces are apart, by region. */
-#include "base/outs.h"
+#include "cli/outs.h"
 #include "cli/tool.h"
 #include "inspect/distance_print.h"
 

@@ -2,7 +2,6 @@
 
 #include "base/chars.h"
 #include "base/num.h"
-#include "base/space.h"
 
 #include <ctype.h>
 #include <inttypes.h>
@@ -10,30 +9,13 @@
 #include <stdio.h>
 #include <string.h>
 
-/* ---- names: FROMToTO */
-
-/* Splits at the first "To" before a capital that has something before it. -1: it is no such name. */
-static int split_name(const char *name, size_t length, char *from, char *to)
-{
-    for (size_t i = 1; i + 2 < length; i++) {
-        if (name[i] != 'T' || name[i + 1] != 'o' || !isupper((unsigned char)name[i + 2]))
-            continue;
-        if (i >= PLUS_NAME || length - i - 2 >= PLUS_NAME)
-            return -1;
-        snprintf(from, PLUS_NAME, "%.*s", (int)i, name);
-        snprintf(to, PLUS_NAME, "%.*s", (int)(length - i - 2), name + i + 2);
-        return 0;
-    }
-    return -1;
-}
-
 int plus_open(plus *p, in *source, const char *transform, err *e)
 {
     *p = (plus){.source = source, .frame = {.number = -1}};
     int first = in_peek(source, e);
     if (first == -2)
         return -1;
-    if (transform && split_name(transform, strlen(transform), p->from, p->to))
+    if (transform && links_split(transform, strlen(transform), p->from, p->to))
         return err_usage(e, "'%.100s' is not a transform; expected FROMToTO, such as ProbeToReference", transform);
     p->nrrd = false;
     return 0;
@@ -91,10 +73,10 @@ static int take_numbers(const char *text, double *to, int most)
 }
 
 /* The transform of that name in the frame, made where it is new. */
-static plus_transform *transform_of(plus *p, const char *name, size_t length, err *e)
+static links_transform *transform_of(plus *p, const char *name, size_t length, err *e)
 {
-    plus_transform t = {0};
-    if (split_name(name, length, t.from, t.to)) {
+    links_transform t = {0};
+    if (links_split(name, length, t.from, t.to)) {
         bad_key(p, e, name, "Seq_FrameNNNN_FROMToTOTransform, of shorter names");
         return NULL;
     }
@@ -117,7 +99,7 @@ static bool ends_with(const char *text, size_t length, const char *ending)
 
 static int take_matrix(plus *p, const char *name, size_t length, const char *value, err *e)
 {
-    plus_transform *t = transform_of(p, name, length, e);
+    links_transform *t = transform_of(p, name, length, e);
     if (!t)
         return -1;
     if (t->set)
@@ -140,7 +122,7 @@ static int take_key(plus *p, const char *key, const char *value, err *e)
     if (ends_with(key, n, matrix))
         return take_matrix(p, key, n - strlen(matrix), value, e);
     if (ends_with(key, n, status)) {
-        plus_transform *t = transform_of(p, key, n - strlen(status), e);
+        links_transform *t = transform_of(p, key, n - strlen(status), e);
         if (t)
             t->bad = strcmp(value, "OK") != 0;
         return t ? 0 : -1;
@@ -230,68 +212,20 @@ static int read_frame(plus *p, err *e)
 
 /* ---- composing */
 
-/* Frames of reference that are reached, each with what takes `from` to it. */
-typedef struct reached {
-    int count;
-    const char *name[2 * PLUS_TRANSFORMS + 1];
-    double m[2 * PLUS_TRANSFORMS + 1][16];
-} reached;
-
-static int find_reached(const reached *r, const char *name)
+static bool compose(const plus *p, const char *from, const char *to, bool bad, double m[16])
 {
-    for (int i = 0; i < r->count; i++)
-        if (!strcmp(r->name[i], name))
-            return i;
-    return -1;
-}
-
-/* Goes over one transform, either way. True: a new one is reached. */
-static bool reach(reached *r, const plus_transform *t)
-{
-    int from = find_reached(r, t->from), to = find_reached(r, t->to);
-    double back[16];
-    if ((from < 0) == (to < 0) || (from < 0 && space_inverse(t->m, back)))
-        return false;
-    if (to < 0)
-        space_product(t->m, r->m[from], r->m[r->count]);
-    else
-        space_product(back, r->m[to], r->m[r->count]);
-    r->name[r->count++] = to < 0 ? t->to : t->from;
-    return true;
-}
-
-/* What takes `from` to `to`; bad: by transforms whose status is not OK, too. False: they are not linked. */
-static bool compose(const plus_frame *f, const char *from, const char *to, bool bad, double m[16])
-{
-    reached r = {.count = 1, .name = {from}};
-    bool more = true;
-    for (int i = 0; i < 16; i += 5)
-        r.m[0][i] = 1;
-    while (more && find_reached(&r, to) < 0) {
-        more = false;
-        for (int i = 0; i < f->count; i++) {
-            const plus_transform *t = &f->transform[i];
-            more |= t->set && (bad || !t->bad) && reach(&r, t);
-        }
-    }
-    int at = find_reached(&r, to);
-    if (at >= 0)
-        memcpy(m, r.m[at], sizeof r.m[at]);
-    return at >= 0;
+    return links_compose(p->frame.transform, p->frame.count, from, to, bad, m);
 }
 
 static int refuse(const plus *p, err *e)
 {
     const char *from = p->from[0] ? p->from : "Image or Probe";
     const char *to = p->to[0] ? p->to : "Reference or Tracker";
-    char list[400] = "";
-    size_t used = 0;
-    for (int i = 0; i < p->frame.count && used < sizeof list; i++)
-        used += (size_t)snprintf(list + used, sizeof list - used, "%s%sTo%s", i ? ", " : "", p->frame.transform[i].from,
-                                 p->frame.transform[i].to);
+    char list[LINKS_LIST];
+    links_list(p->frame.transform, p->frame.count, list);
     return err_set(e, in_name(p->source), p->frame.line,
                    "frame %" PRId64 " does not say where %s is in %s; expected transforms that do, among: '%s'",
-                   p->frame.number, from, to, list[0] ? list : "(none)");
+                   p->frame.number, from, to, list);
 }
 
 /* What the first frame can give, for all. */
@@ -300,7 +234,7 @@ static int choose(plus *p, err *e)
     static const char *const from[] = {"Image", "Probe"}, *const to[] = {"Reference", "Tracker"};
     double m[16];
     for (int i = 0; i < 4; i++)
-        if (compose(&p->frame, from[i % 2], to[i / 2], true, m)) {
+        if (compose(p, from[i % 2], to[i / 2], true, m)) {
             snprintf(p->from, sizeof p->from, "%s", from[i % 2]);
             snprintf(p->to, sizeof p->to, "%s", to[i / 2]);
             return 0;
@@ -321,9 +255,9 @@ int plus_next(plus *p, double *time, int64_t *line, double m[16], err *e)
                            p->frame.number);
         *time = p->frame.time;
         *line = p->frame.line;
-        if (compose(&p->frame, p->from, p->to, false, m))
+        if (compose(p, p->from, p->to, false, m))
             return 1;
-        if (!compose(&p->frame, p->from, p->to, true, m))
+        if (!compose(p, p->from, p->to, true, m))
             return refuse(p, e);
         p->skipped++;
     }

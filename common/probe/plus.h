@@ -6,31 +6,26 @@
 #define SINEW_PLUS_H
 
 #include "base/in.h"
+#include "place/links.h"
 
-enum { PLUS_TRANSFORMS = 16, PLUS_NAME = 64 };
-
-typedef struct plus_transform {
-    char from[PLUS_NAME], to[PLUS_NAME]; /* "" while only its status is known */
-    double m[16];                        /* row by row: takes a place in `from` to one in `to` */
-    bool set, bad;                       /* its matrix was given; its status is not OK */
-} plus_transform;
+enum { PLUS_TRANSFORMS = 16 };
 
 typedef struct plus_frame {
     int64_t number, line; /* -1: none; the line of its last key */
     double time;          /* s; nan: not given */
     int count;
-    plus_transform transform[PLUS_TRANSFORMS];
+    links_transform transform[PLUS_TRANSFORMS];
 } plus_frame;
 
 typedef struct plus {
     in *source;
     bool nrrd, ended;
-    int64_t width;                       /* columns of its images, 0: not known yet */
-    char orientation[8];                 /* UltrasoundImageOrientation, as far as it fits; "": not said yet */
-    char from[PLUS_NAME], to[PLUS_NAME]; /* what is asked for; "": not chosen yet */
-    plus_frame frame;                    /* as far as its keys were read */
-    char *held;                          /* the stream's line, which begins the frame after; NULL: none */
-    int64_t skipped;                     /* frames that were not tracked */
+    int64_t width;                         /* columns of its images, 0: not known yet */
+    char orientation[8];                   /* UltrasoundImageOrientation, as far as it fits; "": not said yet */
+    char from[LINKS_NAME], to[LINKS_NAME]; /* what is asked for; "": not chosen yet */
+    plus_frame frame;                      /* as far as its keys were read */
+    char *held;                            /* the stream's line, which begins the frame after; NULL: none */
+    int64_t skipped;                       /* frames that were not tracked */
 } plus;
 
 /* transform: "ProbeToReference", or NULL (see poses.h). */

@@ -1,6 +1,6 @@
 /* sinew-render: pictures of a model, ray-traced. */
 #include "base/mem.h"
-#include "base/outs.h"
+#include "cli/outs.h"
 #include "cli/progress.h"
 #include "cli/tool.h"
 #include "model/source.h"

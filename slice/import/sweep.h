@@ -17,9 +17,9 @@ typedef struct sweep_frame {
 typedef struct sweep {
     sweep_frame *one; /* owned */
     int64_t count, capacity, skipped;
-    char from[PLUS_NAME],
-        to[PLUS_NAME]; /* what m was made of: ImageToReference, say, or ProbeToReference and a calibration */
-    bool flipped[2];   /* columns, rows: stored the other way round than m has them */
+    char from[LINKS_NAME],
+        to[LINKS_NAME]; /* what m was made of: ImageToReference, say, or ProbeToReference and a calibration */
+    bool flipped[2];    /* columns, rows: stored the other way round than m has them */
 } sweep;
 
 typedef struct sweep_wish {

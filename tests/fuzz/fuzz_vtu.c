@@ -1,6 +1,6 @@
 /* See mesh_bytes.h. */
 // needs: common/exchange/import_mesh.c common/exchange/import_model.c common/exchange/import_ids.c
-// needs: common/exchange/import_vtu.c common/exchange/import_xml.c common/exchange/import_xml_data.c
+// needs: common/exchange/import_vtu.c common/exchange/import_xml.c
 #include "exchange/import_vtu.h"
 
 #include "mesh_bytes.h"

@@ -5,7 +5,7 @@
 // needs: tled/problem/script_move.c
 // needs: tled/problem/script_levels.c tled/problem/script_muscles.c tled/problem/script_track.c tled/muscle/muscles.c
 // needs: tled/muscle/expressions.c tled/muscle/activation.c
-#include "probe/pose_fit.h"
+#include "place/pose_fit.h"
 #include "tled/problem/moves.h"
 #include "tled/problem/script.h"
 

@@ -4,8 +4,8 @@
  */
 #define _GNU_SOURCE /* O_TMPFILE */
 #include "base/out.h"
-#include "base/outs.h"
 #include "base/temporary.h"
+#include "cli/outs.h"
 #include "live/growing.h"
 
 #include "tap.h"

@@ -1,7 +1,7 @@
 #include "tled/contact/sliding_loads.h"
 
 #include "base/mem.h"
-#include "probe/pose_fit.h"
+#include "place/pose_fit.h"
 #include "tled/contact/self_contact.h"
 
 #include <stdlib.h>

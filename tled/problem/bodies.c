@@ -4,7 +4,7 @@
 #include "mesh/fibre_sets.h"
 #include "physics/element.h"
 #include "physics/element_cut.h"
-#include "probe/pose_fit.h"
+#include "place/pose_fit.h"
 #include "tled/problem/conforming_step.h"
 #include "tled/problem/cut.h"
 #include "tled/problem/film_strain.h"

@@ -1,6 +1,6 @@
 #include "base/num.h"
 #include "mesh/rigid_body.h"
-#include "probe/pose_fit.h"
+#include "place/pose_fit.h"
 #include "probe/poses.h"
 #include "tled/problem/script_reader.h"
 

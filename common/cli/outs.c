@@ -1,4 +1,4 @@
-#include "base/outs.h"
+#include "cli/outs.h"
 
 #include "base/mem.h"
 #include "base/path.h"

@@ -1,4 +1,4 @@
-#include "probe/pose_fit.h"
+#include "place/pose_fit.h"
 
 #include <math.h>
 
