@@ -34,6 +34,7 @@ static const struct {
     {ULTRASOUND, "us-surface", "us-surface", "closed surfaces of labels or intensities"},
     {ULTRASOUND, "us-slice", "us-slice", "ultrasound images of a volume, as a model deforms it"},
     {ULTRASOUND, "poses", "sinew-poses", "poses of a probe, from what it does, a line each"},
+    {ULTRASOUND, "igtl-out", "sinew-igtl-out", "images, poses and surfaces for 3D Slicer (OpenIGTLink)"},
     {RESULTS, "deform", "sinew-deform", "an OBJ as the model's results move it"},
     {RESULTS, "results", "sinew-results", "stress, strain and energies of elements, in frames"},
     {RESULTS, "info", "sinew-info", "what a model contains"},

@@ -171,7 +171,8 @@ igtl_meta igtl_meta_at(const igtl_message *m, int i)
 
 unsigned char *igtl_add(igtl_buffer *b, int64_t size, err *e)
 {
-    if (MEM_ROOM(&b->at, &b->room, b->size + size, "a message", e))
+    const int64_t need = b->size + size;
+    if (MEM_ROOM(&b->at, &b->room, need > 0 ? need : 1, "a message", e)) /* of nothing there is a first byte, too */
         return NULL;
     b->size += size;
     return b->at + b->size - size;

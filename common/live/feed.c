@@ -19,6 +19,7 @@ struct feed {
     pthread_cond_t some;
     frame newest;
     bool has_newest, over, shown;
+    int64_t count; /* frames read */
 };
 
 static void close_one(int *fd)
@@ -81,6 +82,7 @@ static void keep_newest(feed *f, frame *is)
     const frame before = f->newest;
     f->newest = *is;
     f->has_newest = true;
+    f->count++;
     pthread_cond_signal(&f->some);
     pthread_mutex_unlock(&f->lock);
     *is = before;
@@ -153,6 +155,14 @@ bool feed_ended(feed *f)
     const bool ended = f->shown;
     pthread_mutex_unlock(&f->lock);
     return ended;
+}
+
+int64_t feed_count(feed *f)
+{
+    pthread_mutex_lock(&f->lock);
+    const int64_t count = f->count;
+    pthread_mutex_unlock(&f->lock);
+    return count;
 }
 
 static int start(feed *f, err *e)

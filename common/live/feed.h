@@ -30,6 +30,9 @@ feed *feed_open(const feed_plan *plan, err *e);
 /* Whether the output has ended, and its last frame was shown. */
 bool feed_ended(feed *f);
 
+/* Frames that were read so far; those that were not shown are among them. */
+int64_t feed_count(feed *f);
+
 /* Waits for the output's end: the tool must have ended, or `stop` have come. f may be NULL. */
 void feed_close(feed *f);
 

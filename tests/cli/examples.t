@@ -74,6 +74,8 @@ for example in "$T"/examples/*; do
         skip 1 "$name: no ccx"
     elif grep -q 'sweep\.igs\.mha' "$T/commands"; then
         skip 1 "$name: a tracked sweep is a recording; us-import.t makes one and runs this"
+    elif grep -q 'sinew igtl-out' "$T/commands"; then
+        skip 1 "$name: listens at a port of this machine; igtl-out.t asks for one that is free"
     elif grep -q 'sinew console' "$T/commands"; then
         skip 1 "$name: goes on until it is ended; console.t does so"
     else

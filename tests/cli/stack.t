@@ -57,6 +57,7 @@ same diff sinew diff "$T/tled-run" "$T/tled-run"
 same distance sinew distance --unit mm --both "$T/box.obj" "$T/box.obj"
 printf 'at vertex:1\npress 1mm .1\n' >"$T/plan"
 same poses sinew poses --surface "$T/box.obj" --unit mm "$T/plan"
+same igtl-out sinew igtl-out --listen 0 --pass
 same export sinew export -f inp
 same render sinew render --size 180x120 --sheet rest,voxels,deformed
 same render-body sinew render --size 180x120 --show voxels,muscles,rigid --clear voxels --colour strain

@@ -71,6 +71,7 @@ clean 0 sinew-distance sinew-distance -q --unit mm --both --points "$T/points" -
 printf 'at surface:0,0,0\npress 1 .1\nmove vertex:1 into x columns y .1\n' >"$T/in"
 clean 0 sinew-poses sinew-poses -q --unit mm --surface "$T/box.obj"
 cp "$T/tled-run-double" "$T/in"
+clean 0 sinew-igtl-out sinew-igtl-out -q --listen 0 --pass
 for format in vtu inp msh obj 'model --text'; do
     # shellcheck disable=SC2086 # words
     clean 0 "sinew-export-${format%% *}" sinew-export -f $format
