@@ -70,7 +70,7 @@ static bool is_gone(serve_hub *h, int i, int result, const err *e)
 /* Says why, and closes. */
 static void refuse(serve_hub *h, int fd, const char *from)
 {
-    char text[80], line[200];
+    char text[80], line[300];
     err ignored = {0};
     igtl_buffer content = {0}, message = {0};
     snprintf(text, sizeof text, "%d clients are served; expected fewer", h->count);

@@ -38,7 +38,7 @@ static void fill(const double *const column[3], const double place[3], double ma
         double to[3];
         space_point_to_mm(all[c], SPACE_RAS, to);
         for (int r = 0; r < 3; r++)
-            matrix[4 * r + c] = to[r];
+            matrix[4 * r + c] = to[r] + 0.0; /* never -0 */
         matrix[12 + c] = c == 3;
     }
 }
