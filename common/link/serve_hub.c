@@ -44,7 +44,7 @@ serve_hub *serve_hub_open(const serve_hub_plan *plan, err *e)
 /* why: it is dropped; NULL: it went by itself. The last client takes its place. */
 static void remove_client(serve_hub *h, int i, const err *why)
 {
-    char line[sizeof why->text + 40];
+    char line[sizeof *why + 40];
     serve_client *c = h->client[i];
     if (why) {
         snprintf(line, sizeof line, "%s; it is dropped", why->text);
@@ -89,7 +89,7 @@ static void refuse(serve_hub *h, int fd, const char *from)
 
 static void accept_all(serve_hub *h)
 {
-    char from[SERVE_FROM], line[sizeof((err *)0)->text + SERVE_FROM + 40];
+    char from[SERVE_FROM], line[sizeof(err) + SERVE_FROM + 40];
     int fd;
     while ((fd = socket_accept(h->plan.listening, from, sizeof from)) >= 0) {
         err e = {0};
@@ -155,7 +155,7 @@ static int prepare(serve_hub *h, int lines)
 static int wait_and_look(serve_hub *h, bool last, err *e)
 {
     const int count = h->count, lines = serve_control_write(h->plan.control);
-    if (poll(h->poll, (nfds_t)(OTHERS + count), prepare(h, lines)) < 0 && errno != EINTR)
+    if (poll(h->poll, OTHERS + (nfds_t)count, prepare(h, lines)) < 0 && errno != EINTR)
         return err_system(e, NULL, errno, "cannot wait for clients");
     if (h->poll[BELL].revents)
         serve_board_heard(h->plan.common.board);

@@ -27,6 +27,7 @@ us-slice -q -o last_%02d.pgm --size 30x16 --probe linear:6mm,4mm,1mm --depth 8mm
 
 # The client is there before the input begins.
 mkfifo input images
+# shellcheck disable=SC2094 # a FIFO
 sinew igtl-out --listen 0 --pass --images images <input 2>said | us-slice -q --size 30x16 --probe linear:6mm,4mm,1mm --depth 8mm v.nrrd >images &
 exec 5<>input
 # seen PATTERN FILE: waits until a line matches, 10 s at most.
