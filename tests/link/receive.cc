@@ -1,4 +1,4 @@
-// A program that receives what sinew igtl-out serves, by Debian's libopenigtlink, for tests/link/out.t, which builds it.
+// A program that receives what sinew igtl-out serves, by libopenigtlink, for tests/link/out.t, which builds it.
 //
 //     receive HOST PORT FILE    connects, asks for what is served, and receives until the connection ends
 //
