@@ -30,7 +30,7 @@ COLLIDE = -lccd
 WEB = -lcivetweb -lturbojpeg
 
 TOOLS = voxelise attach bind tled-run msds-mesh msds-run us-import us-segment us-surface us-slice \
-	sinew sinew-materials sinew-deform sinew-results sinew-info sinew-diff sinew-distance sinew-poses sinew-register sinew-export sinew-import sinew-render sinew-console sinew-igtl-in
+	sinew sinew-materials sinew-deform sinew-results sinew-info sinew-diff sinew-distance sinew-poses sinew-register sinew-export sinew-import sinew-render sinew-console sinew-igtl-out sinew-igtl-in
 
 # `make V=1` shows whole commands.
 ifeq ($(V),1)
@@ -172,6 +172,7 @@ IMPORT_MODULES := $(wildcard common/exchange/import_*.c)
 RENDER_MODULES := $(wildcard common/render/render_*.c)
 CONSOLE_SRC := $(wildcard common/console/*.c)
 IGTL_IN_SRC := common/link/sinew-igtl-in.c $(wildcard common/link/track*.c)
+SERVE_MODULES := $(wildcard common/link/serve_*.c)
 
 define tool
 $(BIN)/$(1): $(call objects,$(2)) $(MAIN_OBJ) $(4) $(LIB)
@@ -202,6 +203,7 @@ $(eval $(call tool,sinew-import,common/exchange/sinew-import.c $(IMPORT_MODULES)
 $(eval $(call tool,sinew-render,common/render/sinew-render.c $(RENDER_MODULES),$$(EMBREE) $$(PICTURES)))
 $(eval $(call tool,sinew-console,$(CONSOLE_SRC),$$(WEB) $$(PICTURES)))
 $(eval $(call tool,sinew-igtl-in,$(IGTL_IN_SRC)))
+$(eval $(call tool,sinew-igtl-out,common/link/sinew-igtl-out.c $(SERVE_MODULES)))
 
 .PHONY: clean
 clean:

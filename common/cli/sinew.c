@@ -35,6 +35,7 @@ static const struct {
     {ULTRASOUND, "us-slice", "us-slice", "ultrasound images of a volume, as a model deforms it"},
     {ULTRASOUND, "poses", "sinew-poses", "poses of a probe, from what it does, a line each"},
     {ULTRASOUND, "register", "sinew-register", "the motion that takes points to those that were touched"},
+    {ULTRASOUND, "igtl-out", "sinew-igtl-out", "images, poses and surfaces for 3D Slicer (OpenIGTLink)"},
     {RESULTS, "deform", "sinew-deform", "an OBJ as the model's results move it"},
     {RESULTS, "results", "sinew-results", "stress, strain and energies of elements, in frames"},
     {RESULTS, "info", "sinew-info", "what a model contains"},

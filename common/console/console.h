@@ -12,11 +12,11 @@
 #include "console/colouring.h"
 #include "console/dials.h"
 #include "console/expression_names.h"
-#include "console/feed.h"
 #include "console/geometry.h"
 #include "console/images.h"
 #include "console/inbox.h"
 #include "console/web.h"
+#include "live/feed.h"
 #include "model/source.h"
 
 #include <pthread.h>

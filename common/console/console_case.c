@@ -207,7 +207,14 @@ static int start_compute(console *c, bool replay, int copy_to, err *e)
         return -1;
     }
     c->has_compute = true;
-    const feed_plan plan = {c->compute.out, line.word[0], copy_to, c, console_show, console_failed};
+    const feed_plan plan = {.from = c->compute.out,
+                            .tool = line.word[0],
+                            .copy_to = copy_to,
+                            .context = c,
+                            .show = console_show,
+                            .failed = console_failed,
+                            .may_be_empty = true,
+                            .stop = -1};
     c->compute.out = -1;
     c->feed = feed_open(&plan, e);
     return c->feed ? 0 : -1;

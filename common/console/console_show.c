@@ -70,7 +70,8 @@ void console_said(void *context, const char *name, const char *line)
 void console_failed(void *context, const char *name, const err *e)
 {
     console *c = context;
-    web_send(c->web, -1, MAIL_SAID, json_said("error", name, e->text));
+    if (!e->silent)
+        web_send(c->web, -1, MAIL_SAID, json_said("error", name, e->text));
 }
 
 /* ---- frames */

@@ -3,8 +3,8 @@
 #include "base/mem.h"
 #include "base/thread.h"
 #include "console/jpeg.h"
-#include "console/pnm.h"
 #include "picture/png.h"
+#include "picture/pnm.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -3,7 +3,7 @@
 . "$(dirname "$0")/lib.sh"
 
 have python3 || skip_all "no python3"
-tools="voxelise attach bind tled-run msds-mesh msds-run us-import us-segment us-surface us-slice sinew-materials sinew-deform sinew-results sinew-info sinew-diff sinew-distance sinew-poses sinew-register sinew-export sinew-import sinew-render sinew-console sinew-igtl-in"
+tools="voxelise attach bind tled-run msds-mesh msds-run us-import us-segment us-surface us-slice sinew-materials sinew-deform sinew-results sinew-info sinew-diff sinew-distance sinew-poses sinew-igtl-out sinew-register sinew-export sinew-import sinew-render sinew-console sinew-igtl-in"
 mkdir "$T/bash" "$T/zsh" "$T/here" "$T/here/sub"
 for tool in $tools sinew; do
     "$tool" --table zsh >"$T/zsh/_$tool"
@@ -45,7 +45,7 @@ us-slice |a.nrrd b.mhd sub
 us-slice --probe |curved: linear: phased:
 attach --fibre |auto axis centre field round shape
 sinew de|deform
-sinew |--help --version attach bind console deform diff distance export help igtl-in import info materials msds-mesh msds-run poses register render results tled-run us-import us-segment us-slice us-surface voxelise
+sinew |--help --version attach bind console deform diff distance export help igtl-out igtl-in import info materials msds-mesh msds-run poses register render results tled-run us-import us-segment us-slice us-surface voxelise
 sinew help def|deform
 sinew bind --u|--unit
 sinew bind f|face.obj

@@ -75,7 +75,7 @@ for example in "$T"/examples/*; do
     elif grep -q 'sweep\.igs\.mha' "$T/commands"; then
         skip 1 "$name: a tracked sweep is a recording; us-import.t makes one and runs this"
     elif grep -q 'sinew igtl-' "$T/commands"; then
-        skip 1 "$name: wants another program on the line; igtl-in.t is one"
+        skip 1 "$name: wants another program on the line; igtl-in.t and igtl-out.t have one"
     elif grep -q 'sinew console' "$T/commands"; then
         skip 1 "$name: goes on until it is ended; console.t does so"
     else

@@ -5,7 +5,7 @@
 
 have make || skip_all "no make"
 root=$T/root
-tools="voxelise attach bind tled-run msds-mesh msds-run us-import us-segment us-surface us-slice sinew sinew-materials sinew-deform sinew-results sinew-info sinew-diff sinew-distance sinew-poses sinew-register sinew-export sinew-import sinew-render sinew-console sinew-igtl-in"
+tools="voxelise attach bind tled-run msds-mesh msds-run us-import us-segment us-surface us-slice sinew sinew-materials sinew-deform sinew-results sinew-info sinew-diff sinew-distance sinew-poses sinew-igtl-out sinew-register sinew-export sinew-import sinew-render sinew-console sinew-igtl-in"
 
 # on ROOT's PREFIX: what was built for the tests, nothing else.
 # shellcheck disable=SC2317 # called by name
@@ -47,7 +47,7 @@ check "sinew-laws(7), sinew-performance(7) and sinew-tled(7)" test -s "$root/usr
 
 # The front command finds the others beside itself, not on PATH, called by any name that leads to it.
 ln -s "$root/usr/bin/sinew" "$T/link"
-for tool in voxelise attach bind tled-run msds-mesh msds-run us-import us-segment us-surface us-slice materials deform results info diff distance poses register export import render console igtl-in; do
+for tool in voxelise attach bind tled-run msds-mesh msds-run us-import us-segment us-surface us-slice materials deform results info diff distance poses igtl-out register export import render console igtl-in; do
     check "sinew $tool runs from its own folder" env PATH=/usr/bin:/bin "$root/usr/bin/sinew" "$tool" --version
     is "$(sed 's/ (.*//' "$T/stdout")" "$("$tool" -V 2>/dev/null | sed 's/ (.*//' | grep . || echo "sinew-$tool")" "and is $tool"
 done

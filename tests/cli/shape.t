@@ -3,7 +3,7 @@
 # no privileges.
 . "$(dirname "$0")/lib.sh"
 
-tools="voxelise attach bind tled-run msds-mesh msds-run us-import us-segment us-surface us-slice sinew-materials sinew-deform sinew-results sinew-info sinew-diff sinew-distance sinew-poses sinew-register sinew-export sinew-import sinew-render sinew-console sinew-igtl-in"
+tools="voxelise attach bind tled-run msds-mesh msds-run us-import us-segment us-surface us-slice sinew-materials sinew-deform sinew-results sinew-info sinew-diff sinew-distance sinew-poses sinew-igtl-out sinew-register sinew-export sinew-import sinew-render sinew-console sinew-igtl-in"
 # A tool that is new is told of here.
 is "$(for tool in $tools sinew voxelize; do echo "$tool"; done | LC_ALL=C sort | tr '\n' ' ')" "$(cd "$SINEW_BIN" && echo * | tr '\n' ' ')" "these are all tools"
 

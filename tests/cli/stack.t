@@ -59,6 +59,7 @@ printf 'at vertex:1\npress 1mm .1\n' >"$T/plan"
 same poses sinew poses --surface "$T/box.obj" --unit mm "$T/plan"
 printf '0 0 0\n40 0 0\n0 30 0\n0 0 20\n' >"$T/points"
 same register sinew register -q --unit mm "$T/points" "$T/points"
+same igtl-out sinew igtl-out --listen 0 --pass
 same export sinew export -f inp
 small sinew igtl-in --list .01 --listen 0 >"$T/small" 2>&1
 is "$? $(grep -c 'nothing has connected' "$T/small")" "1 1" "igtl-in"

@@ -73,6 +73,7 @@ clean 0 sinew-poses sinew-poses -q --unit mm --surface "$T/box.obj"
 printf 'a 0 0 0\nb 40 0 0\nc 0 30 0\nd 0 0 20\n' >"$T/picked"
 clean 0 sinew-register sinew-register -q --unit mm --format tfm --residuals "$T/left" "$T/picked" "$T/picked"
 cp "$T/tled-run-double" "$T/in"
+clean 0 sinew-igtl-out sinew-igtl-out -q --listen 0 --pass
 for format in vtu inp msh obj 'model --text'; do
     # shellcheck disable=SC2086 # words
     clean 0 "sinew-export-${format%% *}" sinew-export -f $format

@@ -1,10 +1,11 @@
-#include "console/feed.h"
+#include "live/feed.h"
 
 #include "base/mem.h"
 #include "base/thread.h"
 #include "model/stream.h"
 
 #include <errno.h>
+#include <poll.h>
 #include <stdlib.h>
 #include <unistd.h>
 
@@ -17,7 +18,8 @@ struct feed {
     pthread_mutex_t lock; /* of what follows */
     pthread_cond_t some;
     frame newest;
-    bool has_newest, over;
+    bool has_newest, over, shown;
+    int64_t count; /* frames read */
 };
 
 static void close_one(int *fd)
@@ -27,18 +29,32 @@ static void close_one(int *fd)
     *fd = -1;
 }
 
-/* Where nobody reads any more, it is closed, and the rest goes on without it. */
-static void write_to(int *fd, const char *bytes, size_t size)
+/* Where nobody reads any more, it is closed, and the rest goes on without it: an errno value. */
+static int write_to(int *fd, const char *bytes, size_t size)
 {
+    int code = 0;
     while (*fd >= 0 && size) {
         const ssize_t n = write(*fd, bytes, size);
         if (n > 0) {
             bytes += n;
             size -= (size_t)n;
         } else if (n < 0 && errno != EINTR) {
+            code = errno;
             close_one(fd);
         }
     }
+    return code;
+}
+
+/* Waits until there is something to read. False: the end was asked for. */
+static bool wait_for_bytes(const feed *f)
+{
+    struct pollfd p[2] = {{.fd = f->plan.from, .events = POLLIN}, {.fd = f->plan.stop, .events = POLLIN}};
+    int n;
+    do
+        n = poll(p, 2, -1);
+    while (n < 0 && errno == EINTR);
+    return !p[1].revents;
 }
 
 static void *copy(void *context)
@@ -46,10 +62,13 @@ static void *copy(void *context)
     enum { CHUNK = 1 << 16 };
     feed *f = context;
     char bytes[CHUNK];
-    ssize_t n;
-    while ((n = read(f->plan.from, bytes, sizeof bytes)) > 0 || (n < 0 && errno == EINTR)) {
-        write_to(&f->plan.copy_to, bytes, n > 0 ? (size_t)n : 0);
-        write_to(&f->write_here, bytes, n > 0 ? (size_t)n : 0);
+    ssize_t n = 0;
+    while (wait_for_bytes(f) &&
+           ((n = read(f->plan.from, bytes, sizeof bytes)) > 0 || (n < 0 && (errno == EINTR || errno == EAGAIN)))) {
+        const int code = write_to(&f->plan.copy_to, bytes, n > 0 ? (size_t)n : 0);
+        if (code && f->plan.cut)
+            f->plan.cut(f->plan.context, code);
+        (void)write_to(&f->write_here, bytes, n > 0 ? (size_t)n : 0);
     }
     close_one(&f->plan.copy_to);
     close_one(&f->write_here);
@@ -63,6 +82,7 @@ static void keep_newest(feed *f, frame *is)
     const frame before = f->newest;
     f->newest = *is;
     f->has_newest = true;
+    f->count++;
     pthread_cond_signal(&f->some);
     pthread_mutex_unlock(&f->lock);
     *is = before;
@@ -89,9 +109,9 @@ static void *read_all(void *context)
     if (!s)
         close(f->read_here);
     f->read_here = -1;
-    const bool empty = s && in_peek(s, &e) == -1; /* the tool ended at once: it has said why */
+    const bool empty = s && f->plan.may_be_empty && in_peek(s, &e) == -1;
     model_reader *r = s && !empty ? model_reader_open(s, &e) : NULL;
-    if (!empty && (!r || read_frames(f, r, &e)) && !e.silent)
+    if (!empty && (!r || read_frames(f, r, &e)))
         f->plan.failed(f->plan.context, f->plan.tool, &e);
     model_reader_close(r);
     in_close(s);
@@ -123,7 +143,26 @@ static void *show(void *context)
             f->plan.show(f->plan.context, &f->body, &now);
         frame_free(&now);
     }
+    pthread_mutex_lock(&f->lock);
+    f->shown = true;
+    pthread_mutex_unlock(&f->lock);
     return NULL;
+}
+
+bool feed_ended(feed *f)
+{
+    pthread_mutex_lock(&f->lock);
+    const bool ended = f->shown;
+    pthread_mutex_unlock(&f->lock);
+    return ended;
+}
+
+int64_t feed_count(feed *f)
+{
+    pthread_mutex_lock(&f->lock);
+    const int64_t count = f->count;
+    pthread_mutex_unlock(&f->lock);
+    return count;
 }
 
 static int start(feed *f, err *e)

@@ -11,7 +11,9 @@ enum { PNM_SIDE_MOST = 16384 };
 typedef struct pnm {
     int columns, rows, channels; /* 1 or 3 */
     bool has_plane;
-    double plane[9];      /* m: the centre of pixel 0 0, the step to the next column, the step to the next row */
+    double plane[9]; /* m: the centre of pixel 0 0, the step to the next column, the step to the next row */
+    bool has_fan;
+    double fan[4];        /* how far above the first row its tip is, radii of its face and end, m; its angle, degrees */
     unsigned char *pixel; /* rows x columns x channels */
     int64_t capacity;
 } pnm;

@@ -1,7 +1,7 @@
 // Images as us-slice streams them: read one after the other with their places, and what is none refused; and as JPEG.
-// needs: common/console/pnm.c common/console/jpeg.c
+// needs: common/console/jpeg.c
 #include "console/jpeg.h"
-#include "console/pnm.h"
+#include "picture/pnm.h"
 #include "tap.h"
 
 #include <stdlib.h>
@@ -24,16 +24,19 @@ static void try_stream(void)
 {
     static const char bytes[] = "P5\n# us-slice: 1 2 3 .5 0 0 0 -1e-3 0\n2 3\n255\nabcdef"
                                 "P6\n# another\n1 2\n255\nABCDEF"
-                                "P5\n# us-slice: 1 2 3 x\n1 1\n255\nz";
+                                "P5\n# us-slice: 1 2 3 x\n1 1\n255\nz"
+                                "P5\n# us-slice: 1 2 3 4 5 6 7 8 9 fan .5 .25 2 60\n1 1\n255\nz";
     err e = {0};
     pnm p = {0};
     in *s = in_memory(bytes, sizeof bytes - 1, "images", &e);
     ok(pnm_next(s, &p, &e) == 1 && p.columns == 2 && p.rows == 3 && p.channels == 1, "a grey image");
     ok(p.has_plane && p.plane[0] == 1 && p.plane[3] == .5 && p.plane[7] == -1e-3 && p.plane[8] == 0, "its place");
+    ok(!p.has_fan, "of no fan");
     ok(!memcmp(p.pixel, "abcdef", 6), "its pixels");
     ok(pnm_next(s, &p, &e) == 1 && p.columns == 1 && p.rows == 2 && p.channels == 3 && !p.has_plane, "one of colours");
     ok(!memcmp(p.pixel, "ABCDEF", 6), "its pixels");
     ok(pnm_next(s, &p, &e) == 1 && !p.has_plane, "a place that is none");
+    ok(pnm_next(s, &p, &e) == 1 && p.has_plane && p.has_fan && p.fan[0] == .5 && p.fan[3] == 60, "a fan");
     ok(pnm_next(s, &p, &e) == 0 && !*e.text, "the end");
     pnm_free(&p);
     in_close(s);

@@ -1,4 +1,4 @@
-#include "console/pnm.h"
+#include "picture/pnm.h"
 
 #include "base/mem.h"
 #include "base/num.h"
@@ -12,21 +12,33 @@ static int wrong(in *s, err *e, const char *what)
     return err_set(e, in_name(s), 0, "%s; expected images as us-slice writes them", what);
 }
 
-/* "# us-slice: X Y Z ...": the first nine numbers. Other comments are let be. */
+/* Up to `count` numbers between blanks. False: there are fewer. */
+static bool take_numbers(const char **at, const char *end, double *to, int count)
+{
+    for (int i = 0; i < count; i++) {
+        *at += strspn(*at, " ");
+        if (num_scan(*at, end, at, &to[i]))
+            return false;
+    }
+    return true;
+}
+
+/* "# us-slice: X Y Z ...": nine numbers, and those after "fan". Other comments are let be. */
 static void take_comment(const char *line, pnm *p)
 {
-    static const char mark[] = "# us-slice:";
+    static const char mark[] = "# us-slice:", fan[] = " fan";
     double plane[9];
     if (strncmp(line, mark, strlen(mark)) != 0)
         return;
     const char *at = line + strlen(mark), *end = line + strlen(line);
-    for (int i = 0; i < 9; i++) {
-        at += strspn(at, " ");
-        if (num_scan(at, end, &at, &plane[i]))
-            return;
-    }
+    if (!take_numbers(&at, end, plane, 9))
+        return;
     memcpy(p->plane, plane, sizeof plane);
     p->has_plane = true;
+    if (strncmp(at, fan, strlen(fan)) != 0)
+        return;
+    at += strlen(fan);
+    p->has_fan = take_numbers(&at, end, p->fan, 4);
 }
 
 /* The next line that is no comment. Its length; -1: the end, -2: e filled. */
@@ -69,7 +81,7 @@ static int take_header(in *s, pnm *p, err *e)
 
 int pnm_next(in *s, pnm *p, err *e)
 {
-    p->has_plane = false;
+    p->has_plane = p->has_fan = false;
     const int got = take_header(s, p, e);
     if (got <= 0)
         return got;

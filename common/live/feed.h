@@ -16,14 +16,24 @@ typedef struct feed_plan {
     void *context;
     /* The newest frame, and the body that it is of. */
     void (*show)(void *context, const model *body, const frame *f);
-    /* What could not be read: once, and no frame follows. */
+    /* What could not be read: once, and no frame follows. Silent where the stream ended with `fail`. */
     void (*failed)(void *context, const char *tool, const err *e);
+    bool may_be_empty; /* a tool that ended at once has said why: nothing has failed */
+    int stop;          /* a descriptor: once it can be read or is hung up, nothing more is read; -1: none */
+    /* The next tool's input cannot be written (an errno value), and the rest goes on without it. NULL: never mind. */
+    void (*cut)(void *context, int code);
 } feed_plan;
 
 /* NULL with e filled; both descriptors are closed in any case. */
 feed *feed_open(const feed_plan *plan, err *e);
 
-/* Waits for the output's end: the tool must have ended. f may be NULL. */
+/* Whether the output has ended, and its last frame was shown. */
+bool feed_ended(feed *f);
+
+/* Frames that were read so far; those that were not shown are among them. */
+int64_t feed_count(feed *f);
+
+/* Waits for the output's end: the tool must have ended, or `stop` have come. f may be NULL. */
 void feed_close(feed *f);
 
 #endif
