@@ -45,7 +45,7 @@ us-slice |a.nrrd b.mhd sub
 us-slice --probe |curved: linear: phased:
 attach --fibre |auto axis centre field round shape
 sinew de|deform
-sinew |--help --version attach bind console deform diff distance export help igtl-out igtl-in import info materials msds-mesh msds-run poses register render results tled-run us-import us-segment us-slice us-surface voxelise
+sinew |--help --version attach bind console deform diff distance export help igtl-in igtl-out import info materials msds-mesh msds-run poses register render results tled-run us-import us-segment us-slice us-surface voxelise
 sinew help def|deform
 sinew bind --u|--unit
 sinew bind f|face.obj
