@@ -5,6 +5,7 @@
 #include "base/num.h"
 #include "live/lines.h"
 #include "live/live_clock.h"
+#include "live/spnav.h"
 #include "live/stop.h"
 #include "tled/problem/bodies.h"
 #include "tled/problem/step.h"
@@ -64,6 +65,8 @@ static int check_sources(const struct options *o, err *e)
                          o->poses   ? "poses"
                          : o->lines ? "control"
                                     : "body");
+    if (!o->live && spnav_refuse(o->poses, e))
+        return -1;
     if (o->lines && !o->live)
         return err_usage(e, "--control without --live; expected both, or --script for what changes in time");
     if (o->rate >= 0 && !o->live && !o->replay)
