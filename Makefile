@@ -169,7 +169,7 @@ PRESET_MODULES := $(wildcard common/inspect/preset_*.c)
 EXPORT_MODULES := $(wildcard common/exchange/export_*.c)
 IMPORT_MODULES := $(wildcard common/exchange/import_*.c)
 RENDER_MODULES := $(wildcard common/render/render_*.c)
-CONSOLE_SRC := $(wildcard common/console/*.c)
+CONSOLE_SRC := $(wildcard common/console/*.c common/console/programs/*.c)
 
 define tool
 $(BIN)/$(1): $(call objects,$(2)) $(MAIN_OBJ) $(4) $(LIB)

@@ -65,7 +65,7 @@ void inbox_put(inbox *b, int client, const message *m)
     while (b->count == MOST && !b->ended)
         pthread_cond_wait(&b->changed, &b->lock);
     if (!b->ended) {
-        if (!last(b) || m->kind != MESSAGE_POSE || last(b)->said.kind != MESSAGE_POSE)
+        if (!last(b) || m->kind != MESSAGE_POSE || last(b)->said.kind != MESSAGE_POSE || last(b)->client != client)
             b->count++;
         *last(b) = (letter){client, *m};
         pthread_cond_broadcast(&b->changed);

@@ -59,7 +59,7 @@ void lines_wake(lines *l);
 /* The newest pose, where one came since the last was taken. */
 bool lines_take_pose(lines *l, lines_pose *to);
 
-/* Says where the probe is, as a pose from a source does, to a 3D mouse alone. */
+/* Says where the probe is, as a pose from a source does, to a 3D mouse alone. Any thread may call it. */
 void lines_place(lines *l, const pose *at);
 
 /* The oldest control that was not taken, cut into words that are valid until the next call; k->name and k->line say

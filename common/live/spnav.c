@@ -20,7 +20,7 @@ enum {
     EVENT = 4 * WORDS, /* bytes */
     ROOM = 64 * EVENT,
     TICK = 8,   /* ms between poses while the probe moves by itself */
-    RETRY = 500 /* ms between attempts to connect again */
+    RETRY = 200 /* ms between attempts to connect again */
 };
 
 /* In messages, with the number of an event. */
@@ -54,7 +54,7 @@ int spnav_refuse(const char *source, err *e)
     return err_usage(e, "--poses %.60s without --live; expected both, as a 3D mouse moves when a hand does", source);
 }
 
-static bool has_start(const char *name)
+bool spnav_has_start(const char *name)
 {
     return strstr(name, ",start=") || !strncmp(name + strlen(SPNAV_PREFIX), "start=", strlen("start="));
 }
@@ -63,7 +63,7 @@ int spnav_check(const char *source, const char *control, err *e)
 {
     if (spnav_is(control))
         return err_usage(e, "--control %.60s; expected --poses, as a 3D mouse has poses alone", control);
-    if (spnav_is(source) && !control && !has_start(source))
+    if (spnav_is(source) && !control && !spnav_has_start(source))
         return err_usage(e,
                          "--poses %.60s: where the probe begins is not said; expected start=FILE, with its first pose, "
                          "at the end of the word, or --control, through which a pose may come",

@@ -22,6 +22,9 @@ int spnav_refuse(const char *source, err *e);
  * start=, and without a second source, which may put it somewhere. Both may be NULL. -1 with e filled (usage). */
 int spnav_check(const char *source, const char *control, err *e);
 
+/* Whether a 3D mouse's words have start=, which says where the probe begins. */
+bool spnav_has_start(const char *name);
+
 /* Connects to the daemon, and reads the pose of start=. NULL with e filled. */
 spnav *spnav_open(const char *name, err *e);
 void spnav_close(spnav *s);

@@ -59,11 +59,13 @@ for line in sys.stdin:
     elif what == "drop":
         heard += listen_to(client)
         client.close()
+        client = None
         server.close()
         os.unlink(path)
     elif what == "back":
         server = serve()
         client, _ = server.accept()
-heard += listen_to(client)
+if client:
+    heard += listen_to(client)
+    os.unlink(path)
 print(heard)
-os.unlink(path)
