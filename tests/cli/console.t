@@ -94,11 +94,11 @@ mkdir "$T/steered" "$T/steering"
 cp "$SINEW_BIN/sinew-console" "$T/steered"
 # shellcheck disable=SC2016 # for the stand-ins
 {
-    printf '%s\n' '#!/bin/sh' 'echo "$*" >"$STAND_IN/in.args"' 'echo "igtl-in: connected" >&2' 'exec cat "$STAND_IN/in.fifo"' >"$T/steered/igtl-in"
-    printf '%s\n' '#!/bin/sh' 'echo "$*" >"$STAND_IN/out.args"' 'exec cat "$4" >"$STAND_IN/out.lines"' >"$T/steered/igtl-out"
-    printf '%s\n' '#!/bin/sh' 'echo "igtl-in: $1: no such host" >&2' 'exit 1' >"$T/steered/igtl-in.fails"
+    printf '%s\n' '#!/bin/sh' 'echo "$*" >"$STAND_IN/in.args"' 'echo "sinew-igtl-in: connected" >&2' 'exec cat "$STAND_IN/in.fifo"' >"$T/steered/sinew-igtl-in"
+    printf '%s\n' '#!/bin/sh' 'echo "$*" >"$STAND_IN/out.args"' 'exec cat "$4" >"$STAND_IN/out.lines"' >"$T/steered/sinew-igtl-out"
+    printf '%s\n' '#!/bin/sh' 'echo "sinew-igtl-in: $1: no such host" >&2' 'exit 1' >"$T/steered/sinew-igtl-in.fails"
 }
-chmod +x "$T/steered"/igtl-*
+chmod +x "$T/steered"/sinew-igtl-*
 timeout 300 python3 tests/cli/console_steer.py "$T/case" "$T/steered" "$T/steering" "$T/page" >"$T/talk" 2>"$T/talk.err"
 is "$?" 0 "the probe is steered, to the end"
 [ ! -s "$T/talk.err" ] || diag_file "$T/talk.err"

@@ -140,8 +140,8 @@ def try_tracker():
     ok(until(lambda: text_of("in.args") == "localhost:18946 --transform ProbeToTracker\n"), "igtl-in is started", text_of("in.args"))
     ok(until(lambda: text_of("out.args").startswith("--listen 127.0.0.1:0 --poses /dev/fd/3")), "and igtl-out", text_of("out.args"))
     names = {child["tool"]: child["alive"] for child in console.page.state["children"]}
-    ok(names == {"msds-run": True, "us-slice": True, "igtl-in": True, "igtl-out": True}, "pages know both", names)
-    ok(until(lambda: "igtl-in: connected" in text_of("errors")), "what they say is on standard error", text_of("errors"))
+    ok(names == {"msds-run": True, "us-slice": True, "sinew-igtl-in": True, "sinew-igtl-out": True}, "pages know both", names)
+    ok(until(lambda: "sinew-igtl-in: connected" in text_of("errors")), "what they say is on standard error", text_of("errors"))
     with open(path("in.fifo"), "w", buffering=1) as f:
         f.write(line(1e9, shifted(first, z=0.004)))
         console.shows(shifted(first, z=0.004), "a pose of the tracker")
@@ -153,9 +153,9 @@ def try_tracker():
         console.shows(shifted(first, z=0.005), "a pose that waits while a hand drags")
         f.write("nonsense\n")
         ok(console.page.heard("line 3: "), "what is wrong is told by its line", console.page.said)
-    ok(console.page.heard("igtl-in ended with status 0"), "a tracker's program that ends is told", console.page.said)
-    console.page.until(lambda p: {"tool": "igtl-in", "alive": False, "why": "ended with status 0"} in p.state["children"], LONG)
-    ok(not next(c for c in console.page.state["children"] if c["tool"] == "igtl-in")["alive"], "and no longer alive", console.page.state["children"])
+    ok(console.page.heard("sinew-igtl-in ended with status 0"), "a tracker's program that ends is told", console.page.said)
+    console.page.until(lambda p: {"tool": "sinew-igtl-in", "alive": False, "why": "ended with status 0"} in p.state["children"], LONG)
+    ok(not next(c for c in console.page.state["children"] if c["tool"] == "sinew-igtl-in")["alive"], "and no longer alive", console.page.state["children"])
     console.hand(shifted(first, x=0.001))
     console.shows(shifted(first, x=0.001), "the hand goes on")
     console.end("tracker")
@@ -168,11 +168,11 @@ def try_tracker():
 
 
 def try_program_that_fails():
-    os.rename(os.path.join(bin_folder, "igtl-in.fails"), os.path.join(bin_folder, "igtl-in"))
+    os.rename(os.path.join(bin_folder, "sinew-igtl-in.fails"), os.path.join(bin_folder, "sinew-igtl-in"))
     console = Console("--poses", "igtl:localhost:18946")
-    ok(console.page.heard("igtl-in ended with status 1: localhost:18946: no such host"), "a tracker's program that fails is told, and why", console.page.said)
+    ok(console.page.heard("sinew-igtl-in ended with status 1: localhost:18946: no such host"), "a tracker's program that fails is told, and why", console.page.said)
     said = console.end("a program that fails")
-    ok("igtl-in ended with status 1: localhost:18946: no such host" in said, "and on standard error", said)
+    ok("sinew-igtl-in ended with status 1: localhost:18946: no such host" in said, "and on standard error", said)
 
 
 try_lines()

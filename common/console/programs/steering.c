@@ -22,7 +22,7 @@
 
 enum { IN, OUT, WORD = 256, WHY = 300, WORDS = 8 };
 
-static const char *const tools[STEERING_PROGRAMS] = {"igtl-in", "igtl-out"};
+static const char *const tools[STEERING_PROGRAMS] = {"sinew-igtl-in", "sinew-igtl-out"};
 
 struct steering {
     steering_plan plan;
