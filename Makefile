@@ -170,7 +170,7 @@ PRESET_MODULES := $(wildcard common/inspect/preset_*.c)
 EXPORT_MODULES := $(wildcard common/exchange/export_*.c)
 IMPORT_MODULES := $(wildcard common/exchange/import_*.c)
 RENDER_MODULES := $(wildcard common/render/render_*.c)
-CONSOLE_SRC := $(wildcard common/console/*.c)
+CONSOLE_SRC := $(wildcard common/console/*.c common/console/programs/*.c)
 IGTL_IN_SRC := common/link/sinew-igtl-in.c $(wildcard common/link/track*.c)
 SERVE_MODULES := $(wildcard common/link/serve_*.c)
 

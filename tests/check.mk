@@ -285,11 +285,11 @@ SANITIZED = $(BUILD)/sanitize$(if $(filter no,$(AVX512)),-avx2)
 # Data races: what has threads, under ThreadSanitizer. (Embree, which is not built so, is seen from outside only.)
 .PHONY: tsan tsan-run
 TSAN = -O1 -g1 -fsanitize=thread -fno-omit-frame-pointer
-TSAN_UNIT = $(patsubst %,$(BUILD)/tests/unit/test_%,pool lines frame_writer tled_step tled_run tled_live msds_run msds_live slice voxelise_voxels)
+TSAN_UNIT = $(patsubst %,$(BUILD)/tests/unit/test_%,pool lines spnav frame_writer tled_step tled_run tled_live msds_run msds_live slice voxelise_voxels)
 tsan:
 	TSAN_OPTIONS=exitcode=99 SINEW_SANITIZED=1 REPEATS=1 $(MAKE) $(JOBS) BUILD=$(BUILD)/tsan BIN=$(BUILD)/tsan/bin CFLAGS='$(TSAN)' CUDA=no tsan-run
 tsan-run: all $(TSAN_UNIT)
-	$(ENVIRONMENT) prove $(if $(V),-v) $(TSAN_UNIT) tests/cli/threads.t tests/cli/live-slice.t tests/cli/live-msds.t tests/cli/live-tled.t
+	$(ENVIRONMENT) prove $(if $(V),-v) $(TSAN_UNIT) tests/cli/threads.t tests/cli/live-slice.t tests/cli/live-msds.t tests/cli/live-tled.t tests/cli/spnav.t
 
 # Every tool under valgrind's memcheck; and in a browser, the HTML pages that samples/paper and man/html make, and the console's page.
 .PHONY: check-valgrind valgrind browser

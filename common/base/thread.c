@@ -4,6 +4,7 @@
 #include <stddef.h>
 #include <sys/resource.h>
 #include <sys/syscall.h>
+#include <time.h>
 #include <unistd.h>
 
 /* What ulimit -s is where nobody has set it. Only what is touched takes memory. */
@@ -19,6 +20,19 @@ int thread_start(pthread_t *thread, void *(*work)(void *), void *context)
     if (!code)
         code = pthread_create(thread, &how, work, context);
     pthread_attr_destroy(&how);
+    return code;
+}
+
+int thread_condition(pthread_cond_t *condition)
+{
+    pthread_condattr_t how;
+    int code = pthread_condattr_init(&how);
+    if (code)
+        return code;
+    code = pthread_condattr_setclock(&how, CLOCK_MONOTONIC);
+    if (!code)
+        code = pthread_cond_init(condition, &how);
+    pthread_condattr_destroy(&how);
     return code;
 }
 

@@ -9,6 +9,10 @@
 /* pthread_create() with a stack of 8 MiB. Returns 0, or an errno value. */
 int thread_start(pthread_t *thread, void *(*work)(void *), void *context);
 
+/* pthread_cond_init() of a condition whose waits end by clock_now (base/clock.h), which only goes forward. Returns 0,
+ * or an errno value. */
+int thread_condition(pthread_cond_t *condition);
+
 /* Lets other threads go first where processors are few: this one, and those that it starts from here on. */
 void thread_yield_to_others(void);
 

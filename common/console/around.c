@@ -101,5 +101,15 @@ void around_free(around *a)
 
 pose around_pose(const around *a, const pose *at)
 {
-    return a->skin_path && a->body_path ? pose_compose(&a->places.volume, at) : *at;
+    return a->skin_path ? around_to_body(a, at) : *at;
+}
+
+pose around_to_body(const around *a, const pose *at)
+{
+    return a->body_path ? pose_compose(&a->places.volume, at) : *at;
+}
+
+pose around_from_body(const around *a, const pose *at)
+{
+    return a->body_path ? pose_relative(&a->places.volume, at) : *at;
 }

@@ -27,4 +27,8 @@ void around_free(around *a);
 /* A pose in the model's axes as the tool that presses the skin is told it: in the body, where that has a place. */
 pose around_pose(const around *a, const pose *at);
 
+/* A pose in the model's axes as one in the body, where the case has one, and the way back. */
+pose around_to_body(const around *a, const pose *at);
+pose around_from_body(const around *a, const pose *at);
+
 #endif

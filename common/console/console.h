@@ -8,13 +8,13 @@
 #include "cli/tool.h"
 #include "console/around.h"
 #include "console/cases.h"
-#include "console/child.h"
 #include "console/colouring.h"
 #include "console/dials.h"
 #include "console/expression_names.h"
 #include "console/geometry.h"
 #include "console/images.h"
 #include "console/inbox.h"
+#include "console/programs/steering.h"
 #include "console/web.h"
 #include "live/feed.h"
 #include "model/source.h"
@@ -45,6 +45,12 @@ typedef struct console {
     const char *record; /* the folder of --record, or NULL */
     web *web;
     inbox *inbox;
+    steering *steering; /* what moves the probe beside pages; NULL: nothing does */
+    pose steered;       /* its last pose, in its frame */
+    bool has_steered;
+    bool waits;   /* this pose, until a hand has been still for a while */
+    bool by_hand; /* a page has moved the probe last */
+    double hand;  /* s, by clock_now: when a hand did */
     address at;
     const char *token; /* or NULL */
     cases cases;
@@ -101,6 +107,14 @@ void console_look(console *c);
 
 void console_take(console *c, int client, const message *m);
 
+/* The client that poses come from which no page has sent: console_steered puts them into the inbox, by another thread.
+ */
+enum { CONSOLE_STEERING = -2 };
+void console_steered(void *context, const pose *at);
+
+/* Lets a pose that waits for a hand to be still have its turn. -1 with e filled. */
+int console_steer(console *c, err *e);
+
 /* The path of a file that a page may have: see web_plan. */
 int console_file(void *context, const char *uri, char path[WEB_PATH]);
 
@@ -108,8 +122,11 @@ int console_file(void *context, const char *uri, char path[WEB_PATH]);
 const char *console_folder(console *c, err *e);
 void console_remove_folder(console *c);
 
-/* Sends a pose to the tool that computes. -1 with e filled. */
+/* Sends a pose in the model's axes to the tool that computes, and to others who listen. -1 with e filled. */
 int console_pose(console *c, const pose *at, err *e);
+
+/* Puts the probe where a case begins: at this pose, or where what steers it has it. -1 with e filled. */
+int console_begin_pose(console *c, const pose *at, err *e);
 
 /* ---- console_state.c */
 
@@ -118,6 +135,7 @@ void console_send_state(console *c);
 /* ---- console_show.c: for other threads too */
 
 void console_said(void *context, const char *name, const char *line);
+void console_heard(void *context, const char *name, const char *line); /* of what steers the probe, and of igtl-out */
 void console_show(void *context, const model *m, const frame *f);
 bool console_wants_image(void *context);
 bool console_wants_raw(void *context);

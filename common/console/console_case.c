@@ -233,7 +233,7 @@ static int start_tools(console *c, bool replay, err *e)
     if (c->face || replay)
         return 0;
     const pose at = first_pose(c->scene);
-    return console_pose(c, &at, e);
+    return console_begin_pose(c, &at, e);
 }
 
 /* ---- opening and closing */
@@ -347,6 +347,7 @@ static void tell_end(console *c, int which, child *is)
 
 void console_look(console *c)
 {
+    char why[CONSOLE_LINE + 200];
     const bool ended[2] = {c->has_compute && !c->told[0] && child_has_ended(&c->compute),
                            c->has_slice && !c->told[1] && child_has_ended(&c->slice)};
     if (ended[0])
@@ -357,6 +358,14 @@ void console_look(console *c)
     const bool device = c->shared.device_is_new;
     c->shared.device_is_new = false;
     pthread_mutex_unlock(&c->shared.lock);
-    if (ended[0] || ended[1] || device)
+    err e = {0};
+    if (console_steer(c, &e))
+        say(c, "error", e.text);
+    const bool lost = steering_has_lost(c->steering, why, sizeof why);
+    if (lost) {
+        say(c, "error", why);
+        tool_say(c->t, "%s", why);
+    }
+    if (ended[0] || ended[1] || device || lost)
         console_send_state(c);
 }

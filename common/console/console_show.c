@@ -67,6 +67,19 @@ void console_said(void *context, const char *name, const char *line)
     web_send(c->web, -1, MAIL_SAID, json_said(level, name, text));
 }
 
+void console_heard(void *context, const char *name, const char *line)
+{
+    console *c = context;
+    const char *text, *level = level_of(name, line, &text);
+    notes warnings = {0};
+    if (!strcmp(level, "warning"))
+        notes_add(&warnings, "%s: %s", name, text);
+    else
+        tool_say(c->t, "%s: %s", name, text);
+    tool_warn(c->t, &warnings);
+    web_send(c->web, -1, MAIL_SAID, json_said(level, name, text));
+}
+
 void console_failed(void *context, const char *name, const err *e)
 {
     console *c = context;

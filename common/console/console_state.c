@@ -74,6 +74,8 @@ static void put_tool(const console *c, out *to)
     pose_to_row(&c->pose, row);
     put_key("pose", to);
     json_numbers(row, 7, to);
+    const char *word = steering_word(c->steering);
+    put_text("from", c->by_hand || !word ? "hand" : word, to);
     out_text(to, "}");
 }
 
@@ -151,13 +153,14 @@ static void put_pulls(const console *c, out *to)
     out_text(to, "]");
 }
 
-static void put_child(const char *name, bool started, const child *is, out *to)
+static void put_child(const char *name, const child *is, bool *any, out *to)
 {
     char how[80] = "";
-    out_text(to, "{\"tool\":");
+    out_text(to, *any ? ",{\"tool\":" : "{\"tool\":");
+    *any = true;
     json_text(name, to);
-    put_bool("alive", started && is->pid, to);
-    if (started && !is->pid)
+    put_bool("alive", is->pid, to);
+    if (!is->pid)
         child_how(is, how, sizeof how);
     put_text("why", *how ? how : NULL, to);
     out_text(to, "}");
@@ -165,12 +168,16 @@ static void put_child(const char *name, bool started, const child *is, out *to)
 
 static void put_children(const console *c, out *to)
 {
+    bool any = false;
     out_text(to, ",\"children\":[");
     if (c->has_compute)
-        put_child(tool_name(c), true, &c->compute, to);
-    if (c->has_slice) {
-        out_text(to, ",");
-        put_child("us-slice", true, &c->slice, to);
+        put_child(tool_name(c), &c->compute, &any, to);
+    if (c->has_slice)
+        put_child("us-slice", &c->slice, &any, to);
+    for (int i = 0; i < STEERING_PROGRAMS; i++) {
+        const child *is = steering_program(c->steering, i);
+        if (is)
+            put_child(is->plan.tool, is, &any, to);
     }
     out_text(to, "]");
 }

@@ -6,10 +6,12 @@
 
 #include <dirent.h>
 #include <errno.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <time.h>
 #include <unistd.h>
 
 static void answer(console *c, int client, const char *level, const char *text)
@@ -43,17 +45,107 @@ static void note_pose(console *c, const pose *at)
     pthread_mutex_unlock(&s->lock);
 }
 
+/* s since 1970, as OpenIGTLink has times. */
+static double unix_time(void)
+{
+    struct timespec now = {0};
+    clock_gettime(CLOCK_REALTIME, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+static void put_line(double time, const pose *at, char *line, size_t size)
+{
+    double row[7];
+    pose_to_row(at, row);
+    snprintf(line, size, "%.6f %.17g %.17g %.17g %.17g %.17g %.17g %.17g", time, row[0], row[1], row[2], row[3], row[4],
+             row[5], row[6]);
+}
+
 int console_pose(console *c, const pose *at, err *e)
 {
     char line[300];
-    double row[7];
-    const pose told = around_pose(&c->around, at);
-    pose_to_row(&told, row);
-    snprintf(line, sizeof line, "%.6f %.17g %.17g %.17g %.17g %.17g %.17g %.17g", clock_now() - c->began, row[0],
-             row[1], row[2], row[3], row[4], row[5], row[6]);
+    const pose told = around_pose(&c->around, at), in_body = around_to_body(&c->around, at);
+    put_line(clock_now() - c->began, &told, line, sizeof line);
     note_pose(c, at);
     c->pose = *at;
-    return child_tell(&c->compute, line, e);
+    const int failed = child_tell(&c->compute, line, e);
+    put_line(unix_time(), &in_body, line, sizeof line);
+    return steering_tell(c->steering, line, e) || failed ? -1 : 0;
+}
+
+/* Where a page has put it, a 3D mouse goes on. */
+static int pose_by_hand(console *c, const pose *at, err *e)
+{
+    const pose in_body = around_to_body(&c->around, at);
+    c->waits = false;
+    c->hand = clock_now();
+    steering_place(c->steering, &in_body);
+    return console_pose(c, at, e);
+}
+
+static int pose_by_other(console *c, err *e)
+{
+    const pose own = around_from_body(&c->around, &c->steered);
+    c->waits = false;
+    return console_pose(c, &own, e);
+}
+
+int console_begin_pose(console *c, const pose *at, err *e)
+{
+    const bool has_places = steering_has_places(c->steering);
+    c->by_hand = !c->has_steered || !has_places;
+    const int failed = c->by_hand ? pose_by_hand(c, at, e) : pose_by_other(c, e);
+    if (has_places)
+        c->hand = -(double)INFINITY; /* which has not moved it yet */
+    return failed;
+}
+
+/* Pages show whose hand it is in. */
+static void note_hand(console *c, bool by_hand)
+{
+    const bool is_new = c->by_hand != by_hand;
+    c->by_hand = by_hand;
+    if (is_new)
+        console_send_state(c);
+}
+
+static int take_pose(console *c, const pose *at, err *e)
+{
+    if (need_ultrasound(c, "pose", e))
+        return -1;
+    const int failed = pose_by_hand(c, at, e);
+    note_hand(c, true);
+    return failed;
+}
+
+/* A hand that drags has the probe until it has been still for a second: then the newest pose counts that came since its
+ * last one. A 3D mouse goes on from where the hand is: of it only what was on its way then is too old. */
+int console_steer(console *c, err *e)
+{
+    static const double second = 1, old = .1;
+    const bool has_places = steering_has_places(c->steering);
+    if (!c->waits || clock_now() < c->hand + (has_places ? second : old))
+        return 0;
+    const int failed = pose_by_other(c, e);
+    note_hand(c, false);
+    return failed;
+}
+
+static int take_steered(console *c, const pose *at, err *e)
+{
+    c->steered = *at;
+    c->has_steered = true;
+    c->waits = c->open >= 0 && !c->face && !c->replaying;
+    const int failed = console_steer(c, e);
+    c->waits = c->waits && steering_has_places(c->steering);
+    return failed;
+}
+
+void console_steered(void *context, const pose *at)
+{
+    const console *c = context;
+    message m = {.kind = MESSAGE_POSE, .at = *at};
+    inbox_put(c->inbox, CONSOLE_STEERING, &m);
 }
 
 /* ---- lines for tools */
@@ -314,7 +406,7 @@ static int take(console *c, int client, const message *m, err *e)
     case MESSAGE_OPEN:
         return take_open(c, m->line, e);
     case MESSAGE_POSE:
-        return need_ultrasound(c, "pose", e) || console_pose(c, &m->at, e) ? -1 : 0;
+        return client == CONSOLE_STEERING ? take_steered(c, &m->at, e) : take_pose(c, &m->at, e);
     case MESSAGE_TOOL:
         return take_line(c, m->line, e);
     case MESSAGE_IMAGE:
@@ -340,7 +432,7 @@ void console_take(console *c, int client, const message *m)
 {
     err e = {0};
     if (take(c, client, m, &e))
-        answer(c, client, "error", e.text);
+        answer(c, client == CONSOLE_STEERING ? -1 : client, "error", e.text);
     if (m->kind != MESSAGE_POSE && m->kind != MESSAGE_STEP && m->kind != MESSAGE_SAVE)
         console_send_state(c);
 }

@@ -2,6 +2,7 @@
 
 #include "base/clock.h"
 #include "base/mem.h"
+#include "base/thread.h"
 
 #include <pthread.h>
 #include <stdlib.h>
@@ -24,15 +25,16 @@ struct inbox {
 inbox *inbox_make(err *e)
 {
     inbox *b = mem_array(1, sizeof *b, "messages", e);
-    pthread_condattr_t clock;
     if (!b)
         return NULL;
     pthread_mutex_init(&b->lock, NULL);
-    pthread_condattr_init(&clock);
-    pthread_condattr_setclock(&clock, CLOCK_MONOTONIC);
-    pthread_cond_init(&b->changed, &clock);
-    pthread_condattr_destroy(&clock);
-    return b;
+    const int code = thread_condition(&b->changed);
+    if (!code)
+        return b;
+    err_system(e, NULL, code, "cannot take messages");
+    pthread_mutex_destroy(&b->lock);
+    free(b);
+    return NULL;
 }
 
 void inbox_free(inbox *b)
@@ -63,7 +65,7 @@ void inbox_put(inbox *b, int client, const message *m)
     while (b->count == MOST && !b->ended)
         pthread_cond_wait(&b->changed, &b->lock);
     if (!b->ended) {
-        if (!last(b) || m->kind != MESSAGE_POSE || last(b)->said.kind != MESSAGE_POSE)
+        if (!last(b) || m->kind != MESSAGE_POSE || last(b)->said.kind != MESSAGE_POSE || last(b)->client != client)
             b->count++;
         *last(b) = (letter){client, *m};
         pthread_cond_broadcast(&b->changed);

@@ -1,5 +1,5 @@
 /* Messages of pages on their way to the one thread that acts on them. Of poses the newest counts: one that waits is
- * replaced. Who puts waits while the box is full. The caller owns it.
+ * replaced by the next of the same client. Who puts waits while the box is full. The caller owns it.
  */
 #ifndef SINEW_INBOX_H
 #define SINEW_INBOX_H

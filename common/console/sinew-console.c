@@ -16,7 +16,7 @@
 
 struct options {
     opt_common common;
-    const char *listen, *record, *page, *three;
+    const char *listen, *record, *page, *three, *poses, *igtl_out;
 };
 
 #define TO(field) offsetof(struct options, field)
@@ -24,8 +24,12 @@ static const opt option_list[] = {{OPT_INPUT, 0, "page", "FOLDER", OPT_TEXT, TO(
                                    "another copy of the page [default that which was installed]"},
                                   {OPT_INPUT, 0, "three", "FOLDER", OPT_TEXT, TO(three), 0, 0, NULL, OPT_FILE,
                                    "another copy of three.js [default /usr/share/javascript/three]"},
+                                  {OPT_INPUT, 0, "poses", "SOURCE", OPT_TEXT, TO(poses), 0, 0, "spnav:|igtl:", OPT_FILE,
+                                   "move the probe too: a FIFO, spnav: or igtl:HOST:PORT[,TRANSFORM]"},
                                   {OPT_ACTION, 0, "listen", "[ADDRESS:]PORT", OPT_TEXT, TO(listen), 0, 0, NULL, 0,
                                    "where to serve it [default 127.0.0.1 and a free port]"},
+                                  {OPT_ACTION, 0, "igtl-out", "[ADDRESS:]PORT", OPT_TEXT, TO(igtl_out), 0, 0, NULL, 0,
+                                   "serve the probe's pose by OpenIGTLink there, as igtl-out does"},
                                   {OPT_RESULT, 0, "record", "FOLDER", OPT_TEXT, TO(record), 0, 0, NULL, OPT_FILE,
                                    "record every run there, and save there"},
                                   {0}};
@@ -102,7 +106,11 @@ static int start(console *c, const struct options *o, char token[ORIGIN_TOKEN], 
     if (!c->web)
         return -1;
     c->at.port = web_port(c->web);
-    return 0;
+    const steering_plan steers = {o->poses, o->igtl_out, c, console_steered, console_heard};
+    if (!o->poses && !o->igtl_out)
+        return 0;
+    c->steering = steering_open(&steers, e);
+    return c->steering ? 0 : -1;
 }
 
 static int put_address(const console *c, const char *path, err *e)
@@ -144,6 +152,8 @@ static void finish(console *c)
 {
     if (c->inbox)
         inbox_end(c->inbox);
+    steering_close(c->steering);
+    c->steering = NULL;
     if (c->web)
         console_close(c);
     web_close(c->web);

@@ -449,13 +449,15 @@ web *web_open(const web_plan *plan, err *e)
     if (!w)
         return NULL;
     w->plan = *plan;
-    pthread_condattr_t clock;
     pthread_mutex_init(&w->lock, NULL);
-    pthread_condattr_init(&clock);
-    pthread_condattr_setclock(&clock, CLOCK_MONOTONIC);
-    pthread_cond_init(&w->got, &clock);
-    pthread_condattr_destroy(&clock);
+    const int code = thread_condition(&w->got);
     struct mg_server_port port = {0};
+    if (code) {
+        err_system(e, NULL, code, "cannot serve the page");
+        pthread_mutex_destroy(&w->lock);
+        free(w);
+        return NULL;
+    }
     if (!start(w, e)) {
         if (mg_get_server_ports(w->server, 1, &port) == 1)
             atomic_store(&w->port, port.port);

@@ -4,6 +4,8 @@
 #include "base/clock.h"
 #include "base/mem.h"
 #include "base/thread.h"
+#include "live/kinds.h"
+#include "live/spnav.h"
 #include "live/stop.h"
 
 #include <ctype.h>
@@ -23,7 +25,6 @@
 enum {
     KEPT = 4096,                /* controls that wait: then their writer does */
     ROOM = KEYFILE_LINE + 4096, /* bytes of a source that are looked at */
-    KINDS = 64,                 /* of errors that are told apart */
     ROUND = 256 /* controls that are taken before a frame: a writer that never stops does not stop frames */
 };
 
@@ -35,8 +36,9 @@ typedef struct control {
 
 typedef struct source {
     lines *all;
-    char *name; /* owned */
-    in *before; /* what was read of it already, or NULL; borrowed */
+    char *name;   /* owned */
+    in *before;   /* what was read of it already, or NULL; borrowed */
+    spnav *mouse; /* a 3D mouse, which is all that it is then; owned */
     int fd;
     bool is_owned; /* the descriptor */
     bool waits;    /* for another writer, at the end */
@@ -60,29 +62,23 @@ struct lines {
     bool has_pose, ends, woken;
     bool over; /* standard input has ended */
     lines_pose pose;
+    pose placed;        /* the newest pose that is no 3D mouse's, which goes on from there */
+    bool has_placed;    /* it was not taken by one */
     control list[KEPT]; /* a ring */
     int64_t first, count;
     int round;     /* controls that were taken since lines_take() had none */
     char *current; /* of the control that was taken last; owned */
     lines_counts counts;
-    const char *kind[KINDS];
-    int kinds;
-    notes told;
+    kinds kinds;
 };
 
 /* ---- What a thread does */
 
-/* With the lock. */
-static void skip(lines *l, const err *e)
+/* With the lock. what: "line", or "event". */
+static void skip(lines *l, const err *e, const char *what)
 {
     l->counts.skipped++;
-    for (int i = 0; i < l->kinds; i++)
-        if (l->kind[i] == e->form)
-            return;
-    if (l->kinds == KINDS)
-        return;
-    l->kind[l->kinds++] = e->form;
-    notes_add(&l->told, "%s; the line is skipped, and others like it are", e->text);
+    kinds_add(&l->kinds, e, what);
 }
 
 static bool is_name(const char *word)
@@ -96,13 +92,25 @@ static bool is_pose(const keyfile *k)
 }
 
 /* With the lock. */
-static void put_pose(source *s, const poses_event *at)
+static void place(lines *l, const pose *at)
 {
+    l->placed = *at;
+    l->has_placed = true;
+}
+
+static void put_pose(void *context, double time, const pose *at, int64_t line)
+{
+    const source *s = context;
     lines *l = s->all;
+    pthread_mutex_lock(&l->lock);
     l->counts.poses++;
     l->counts.stale += l->has_pose;
     l->has_pose = true;
-    l->pose = (lines_pose){at->time, at->at, clock_now(), s->name, s->line};
+    l->pose = (lines_pose){time, *at, clock_now(), s->name, line};
+    if (!s->mouse)
+        place(l, at);
+    pthread_cond_signal(&l->came);
+    pthread_mutex_unlock(&l->lock);
 }
 
 static int take_pose(source *s, const keyfile *k, err *e)
@@ -114,10 +122,7 @@ static int take_pose(source *s, const keyfile *k, err *e)
     s->last = at.time; /* also of a line that is skipped: a tracker that begins anew loses one */
     if (at.time < last)
         return keyfile_error(k, e, "time %.9g comes after %.9g; expected times that do not decrease", at.time, last);
-    pthread_mutex_lock(&s->all->lock);
-    put_pose(s, &at);
-    pthread_cond_signal(&s->all->came);
-    pthread_mutex_unlock(&s->all->lock);
+    put_pose(s, at.time, &at.at, s->line);
     return 0;
 }
 
@@ -152,10 +157,11 @@ static int take_line(source *s, char *text, size_t length, err *e)
     return got > 0 ? take_pose(s, &k, e) : got;
 }
 
-static void skip_line(source *s, const err *e)
+static void skip_line(void *context, const err *e)
 {
+    const source *s = context;
     pthread_mutex_lock(&s->all->lock);
-    skip(s->all, e);
+    skip(s->all, e, s->mouse ? "event" : "line");
     pthread_mutex_unlock(&s->all->lock);
 }
 
@@ -259,11 +265,34 @@ static void take_rest(source *s)
     }
 }
 
+static void mouse_said(void *context, const char *text, bool went)
+{
+    const source *s = context;
+    pthread_mutex_lock(&s->all->lock);
+    s->all->counts.writers += went;
+    notes_add(&s->all->kinds.told, "%s", text);
+    pthread_cond_signal(&s->all->came);
+    pthread_mutex_unlock(&s->all->lock);
+}
+
+static bool mouse_placed(void *context, pose *at)
+{
+    lines *l = ((source *)context)->all;
+    pthread_mutex_lock(&l->lock);
+    const bool is = l->has_placed;
+    *at = l->placed;
+    l->has_placed = false;
+    pthread_mutex_unlock(&l->lock);
+    return is;
+}
+
 static void *read_source(void *context)
 {
     source *s = context;
+    if (s->mouse)
+        spnav_run(s->mouse, s->all->stop[0], &(spnav_to){s, put_pose, skip_line, mouse_said, mouse_placed});
     take_rest(s);
-    while (wait_for_bytes(s) && read_more(s))
+    while (!s->mouse && wait_for_bytes(s) && read_more(s))
         ;
     pthread_mutex_lock(&s->all->lock);
     s->all->over = s->all->over || !s->is_owned;
@@ -315,6 +344,8 @@ static int open_source(lines *l, const char *path, in *before, err *e)
     if (!s->name || !s->text)
         return -1;
     s->is_owned = !is_standard;
+    if (spnav_is(path))
+        return (s->mouse = spnav_open(s->name, e)) ? 0 : -1;
     s->fd = is_standard ? STDIN_FILENO : open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
     if (s->fd < 0 || fstat(s->fd, &is))
         return err_system(e, path, errno, "cannot open");
@@ -340,14 +371,10 @@ static int start_threads(lines *l, err *e)
     return 0;
 }
 
-/* Waits go by the clock that only goes forward. */
 static int make_locks(lines *l)
 {
-    pthread_condattr_t how;
     int code = pthread_mutex_init(&l->lock, NULL);
-    code = code ? code : pthread_condattr_init(&how);
-    code = code ? code : pthread_condattr_setclock(&how, CLOCK_MONOTONIC);
-    code = code ? code : pthread_cond_init(&l->came, &how);
+    code = code ? code : thread_condition(&l->came);
     return code ? code : pthread_cond_init(&l->taken, NULL);
 }
 
@@ -376,6 +403,8 @@ lines *lines_open_named(const char *poses_path, const char *control_path, in *be
 {
     const char *path[2];
     int count = 0;
+    if (spnav_check(poses_path, control_path, e))
+        return NULL;
     if (poses_path)
         path[count++] = poses_path;
     if (control_path && !(poses_path && !strcmp(poses_path, control_path)))
@@ -399,6 +428,7 @@ void lines_close(lines *l)
             pthread_join(s->thread, NULL);
         if (s->is_owned && s->fd >= 0)
             close(s->fd);
+        spnav_close(s->mouse);
         free(s->name);
         free(s->text);
     }
@@ -409,7 +439,7 @@ void lines_close(lines *l)
     pthread_cond_destroy(&l->came);
     pthread_cond_destroy(&l->taken);
     pthread_mutex_destroy(&l->lock);
-    notes_free(&l->told);
+    notes_free(&l->kinds.told);
     free(l->current);
     free(l);
 }
@@ -503,7 +533,7 @@ static void take_back(lines *l, int64_t *count, err *e)
 {
     pthread_mutex_lock(&l->lock);
     --*count;
-    skip(l, e);
+    skip(l, e, "line");
     pthread_mutex_unlock(&l->lock);
     *e = (err){0};
 }
@@ -518,6 +548,13 @@ void lines_skip_pose(lines *l, err *e)
     take_back(l, &l->counts.poses, e);
 }
 
+void lines_place(lines *l, const pose *at)
+{
+    pthread_mutex_lock(&l->lock);
+    place(l, at);
+    pthread_mutex_unlock(&l->lock);
+}
+
 void lines_drop_pose(lines *l)
 {
     pthread_mutex_lock(&l->lock);
@@ -528,13 +565,8 @@ void lines_drop_pose(lines *l)
 void lines_tell(lines *l, notes *warnings)
 {
     pthread_mutex_lock(&l->lock);
-    const notes told = l->told;
-    l->told = (notes){0};
+    kinds_take(&l->kinds, warnings);
     pthread_mutex_unlock(&l->lock);
-    notes all = told;
-    for (int i = 0; i < all.count; i++)
-        notes_add(warnings, "%s", all.line[i]);
-    notes_free(&all);
 }
 
 bool lines_ended(lines *l)

@@ -6,7 +6,8 @@
  * and counted: garbage, a number that is not finite, a quaternion that is not of length 1, a time before that of the
  * line before, a line that was cut. A FIFO whose writer goes away waits for the next one, whose times begin anew;
  * standard input, a pipe without a name, or any other file ends where it ends. Regular files are refused. The end of
- * standard input, where it is a source, is the end of all.
+ * standard input, where it is a source, is the end of all. A source may also be a 3D mouse (live/spnav.h), which never
+ * ends; it goes on from the newest pose that another source has put the probe to.
  *
  * The functions are for the thread that called lines_open. The caller owns the object.
  */
@@ -39,7 +40,8 @@ typedef struct lines_counts {
  * be NULL, has read a part) and starts to read. A FIFO need not have a writer yet. NULL with e filled. */
 lines *lines_open(const char *const *path, int count, in *before, err *e);
 
-/* The same for a source of poses and one of controls. Each may be NULL; one that is named for both is read once. */
+/* The same for a source of poses and one of controls. Each may be NULL; one that is named for both is read once. A 3D
+ * mouse whose probe would be nowhere, without start= and without a second source, is refused. */
 lines *lines_open_named(const char *poses_path, const char *control_path, in *before, err *e);
 
 void lines_close(lines *l);
@@ -56,6 +58,9 @@ void lines_wake(lines *l);
 
 /* The newest pose, where one came since the last was taken. */
 bool lines_take_pose(lines *l, lines_pose *to);
+
+/* Says where the probe is, as a pose from a source does, to a 3D mouse alone. Any thread may call it. */
+void lines_place(lines *l, const pose *at);
 
 /* The oldest control that was not taken, cut into words that are valid until the next call; k->name and k->line say
  * where it stood. False where there is none, and once after 256 of them, so that a frame can be made. */

@@ -1,14 +1,16 @@
 #include "live/stop.h"
 
 #include <signal.h>
+#include <stdatomic.h>
 #include <stddef.h>
 
-static volatile sig_atomic_t came;
+/* Without locks, so a signal's handler may write it; and any thread may read it. */
+static atomic_int came;
 
 static void on_signal(int signal)
 {
     (void)signal;
-    came = 1;
+    atomic_store(&came, 1);
 }
 
 void stop_catch(void)
@@ -22,5 +24,5 @@ void stop_catch(void)
 
 bool stop_came(void)
 {
-    return came != 0;
+    return atomic_load(&came) != 0;
 }

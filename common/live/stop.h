@@ -10,7 +10,7 @@
  * (base/temporary.h): that leaves caught signals alone. */
 void stop_catch(void);
 
-/* Whether one came. */
+/* Whether one came. Any thread may ask. */
 bool stop_came(void);
 
 #endif

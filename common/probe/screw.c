@@ -45,10 +45,9 @@ screw screw_of(const pose *from, const pose *to)
     return s;
 }
 
-pose screw_at(const screw *s, double share)
+/* A share of the motion; `to` is not looked at. */
+static pose go(const screw *s, double share)
 {
-    if (share <= 0 || share >= 1)
-        return share >= 1 ? s->to : s->from;
     const double t = share * s->angle, half = t / 2;
     const double along = t > 0 ? sin(half) * sin(half) / half : 0;
     const double twice = t > slight ? 1 - sin(t) / t : t * t / 6;
@@ -60,6 +59,25 @@ pose screw_at(const screw *s, double share)
     for (int a = 0; a < 3; a++)
         at.position[a] = s->from.position[a] + share * gone[a];
     return at;
+}
+
+pose screw_at(const screw *s, double share)
+{
+    if (share <= 0 || share >= 1)
+        return share >= 1 ? s->to : s->from;
+    return go(s, share);
+}
+
+pose screw_along(const pose *from, const double way[3], const double turn[3])
+{
+    screw s = {.from = pose_none(), .way = {way[0], way[1], way[2]}};
+    s.angle = sqrt(turn[0] * turn[0] + turn[1] * turn[1] + turn[2] * turn[2]);
+    for (int a = 0; a < 3; a++)
+        s.axis[a] = s.angle > 0 ? turn[a] / s.angle : a == 2;
+    const pose gone = go(&s, 1);
+    pose to = pose_compose(from, &gone);
+    pose_unit(to.quaternion);
+    return to;
 }
 
 double screw_length(const screw *s, double radius)

@@ -22,6 +22,10 @@ screw screw_of(const pose *from, const pose *to);
 /* A share of the motion, 0 to 1: at its ends the very poses. */
 pose screw_at(const screw *s, double share);
 
+/* Where a body comes to from `from`, when in its own frame its origin moves at the velocity `way` and it turns by the
+ * rotation vector `turn` (radians), both constant, for a unit of time: from exp(way, turn). */
+pose screw_along(const pose *from, const double way[3], const double turn[3]);
+
 /* m: no point within a radius about the body's origin goes a longer way, over the whole motion. */
 double screw_length(const screw *s, double radius);
 

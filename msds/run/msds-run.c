@@ -1,6 +1,7 @@
 /* msds-run: presses a probe on a tetrahedral model, pose by pose, and writes a frame for each as soon as it is solved:
  * by springs and dampers or by finite elements. PST sections III and the appendix.
  */
+#include "live/spnav.h"
 #include "live/stop.h"
 #include "msds/run/frame_report.h"
 #include "msds/run/msds_live.h"
@@ -80,6 +81,8 @@ static int check_options(const struct options *o, err *e)
         return check_live(o, e);
     if (!o->poses)
         return err_usage(e, "missing option --poses; expected --poses FILE");
+    if (spnav_refuse(o->poses, e))
+        return -1;
     if (o->control || o->record || o->force)
         return err_usage(e, "--control, --record and --force are for --live; expected it too");
     return 0;

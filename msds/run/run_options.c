@@ -15,7 +15,7 @@ static const opt option_list[] = {
     {OPT_ACTION, 0, "probe", "SHAPE", OPT_TEXT, TO(probe), 0, 0, "sphere:|linear:|curved:|convex:", OPT_OUTPUT,
      "sphere:R, linear:W,T, curved:R,A,T or convex:OBJ [default none]"},
     {OPT_INPUT, 0, "poses", "FILE", OPT_TEXT, TO(poses), 0, 0, NULL, OPT_FILE,
-     "poses: TUM lines or a PLUS sequence; with --live a FIFO"},
+     "TUM lines or a PLUS sequence; with --live a FIFO or spnav:"},
     {OPT_INPUT, 0, "transform", "NAME", OPT_TEXT, TO(transform), 0, 0, NULL, 0, "which transform of a PLUS sequence"},
     {OPT_INPUT, 0, "body", "FILE", OPT_TEXT, TO(body), 0, 0, NULL, OPT_FILE, "where the model lies for --poses"},
     {OPT_INPUT, 0, "marker", "FILE", OPT_TEXT, TO(marker), 0, 0, NULL, OPT_FILE,

@@ -58,11 +58,8 @@ static void *read_frames(void *context)
 
 static int start(slice_feed *f, err *e)
 {
-    pthread_condattr_t how;
     int code = pthread_mutex_init(&f->lock, NULL);
-    code = code ? code : pthread_condattr_init(&how);
-    code = code ? code : pthread_condattr_setclock(&how, CLOCK_MONOTONIC);
-    code = code ? code : pthread_cond_init(&f->end, &how);
+    code = code ? code : thread_condition(&f->end);
     if (code || pipe2(f->stop, O_CLOEXEC))
         return err_system(e, source_name(f->from), code ? code : errno, "cannot read frames");
     in_watch(f->from->stream, f->stop[0]);

@@ -1,5 +1,6 @@
 #include "slice/image/slice_options.h"
 
+#include "live/spnav.h"
 #include "slice/image/slice_cutter.h"
 
 #include <math.h>
@@ -89,6 +90,8 @@ static int check_live(const slice_options *o, err *e)
         return err_usage(e, "--live with --replay; expected one of them");
     if (!o->live && (o->control || o->record || o->rate == o->rate))
         return err_usage(e, "--control, --record and --rate are for --live; expected --live too");
+    if (!o->live && spnav_refuse(o->poses, e))
+        return -1;
     if (o->force && !o->record)
         return err_usage(e, "--force without --record, whose file may be written over");
     if (o->replay && (o->poses || o->transform))

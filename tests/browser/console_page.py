@@ -97,6 +97,17 @@ class Page:
         if modifier:
             ActionChains(self.driver).key_up(modifier).perform()
 
+    def hold(self, place, wait):
+        """Presses at a place, and lets go when wait() has returned."""
+        chain = ActionChains(self.driver, duration=30)
+        chain.w3c_actions.pointer_action.move_to_location(*[round(x) for x in place])
+        chain.w3c_actions.pointer_action.pointer_down()
+        chain.perform()
+        wait()
+        chain = ActionChains(self.driver)
+        chain.w3c_actions.pointer_action.pointer_up()
+        chain.perform()
+
     def wheel(self, place, by):
         x, y = [round(x) for x in place]
         self.driver.execute_cdp_cmd("Input.dispatchMouseEvent", {"type": "mouseMoved", "x": x, "y": y})
@@ -222,6 +233,13 @@ def probe(t, server, page):
     t.check("the image follows", page.until(f"Math.abs(sinew.image.origin[0] - {image[0]}) > 0.001"))
     t.check("with other pixels, until it is still", until(lambda: page.get("sinew.imageView.version") > version and still(page)), version)
     t.check("the page did not turn the view", page.get("sinew.view.orbit.enabled"))
+    sent = server.count("pose")
+    page.hold(page.on_probe(), lambda: until(lambda: server.count("pose") > sent + 1))
+    t.check("a hand that holds it still says so", server.count("pose") > sent + 1)
+    t.is_("the page says that a hand moves it", page.get("document.getElementById('from').textContent"), "hand")
+    server.model.source = "3D mouse"
+    page.driver.execute_script("sinew.send('method fem')")
+    t.check("or what else does", page.until("document.getElementById('from').textContent === '3D mouse'"))
     at = page.on_probe()
     page.wheel(at, -100)
     t.check("the wheel over it pushes in by half a millimetre", page.until("Math.abs(sinew.probe.held.depth + 4.5) < 0.01"), page.get("sinew.probe.held"))

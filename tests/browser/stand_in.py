@@ -137,6 +137,7 @@ class Arm:
                        Mesh(2, "artery", "label", "#c8463c", True, tube(.007, -.014, .0035)), Mesh(3, "bone", "bone", "#e6dfcf", False, tube(0, -.03, .008))]
         self.pose = list(UPRIGHT)
         self.shape = "linear:4cm,1cm"
+        self.source = "hand"  # what has moved the probe
         self.method = "msds"
         self.settings = {"iterations": setting("20", "", "Time steps or iterations for each 1/60 s", min=1),
                          "dt": setting("0.01", "s", "The time step of springs", min=0),
@@ -187,7 +188,8 @@ class Arm:
 
     def state(self):
         return {"tool": {"name": "msds-run", "method": self.method, "methods": ["msds", "fem", "exact", "warp", "exact-warp", "tissue"], "settings": self.settings},
-                "image": {"settings": self.image}, "probe": {"shape": self.shape, "pose": self.pose}, "device": "cpu, 2 threads"}
+                "image": {"settings": self.image}, "probe": {"shape": self.shape, "pose": self.pose, "from": self.source},
+                "device": "cpu, 2 threads"}
 
     def take(self, verb, words):
         """None, or what is wrong."""

@@ -29,6 +29,20 @@ fails 1 "a folder that has no three.js" "there is no build/three.module.js; expe
     console --three "$T/none" tests/cli/small.sinew
 : >"$T/file"
 fails 1 "records in a file" "cannot (make|write)" console --record "$T/file/x" tests/cli/small.sinew
+while read -r status option message; do
+    # shellcheck disable=SC2086 # words
+    fails "$status" "$option" "$message" env SPNAV_SOCKET="$T/nothing" timeout 60 sinew-console --page "$T/page" ${option%%=*} "${option#*=}" tests/cli/small.sinew
+done <<'END'
+2 --poses=igtl:localhost expected igtl:HOST:PORT
+2 --poses=igtl:localhost:0 expected igtl:HOST:PORT
+2 --poses=igtl:localhost:18944, expected igtl:HOST:PORT
+2 --poses=spnav:start=a.tum expected no start=
+2 --poses=spnav:x expected joystick or mouse
+1 --poses=spnav: cannot connect: No such file.*expected spacenavd
+1 --poses=tests/cli/small.sinew is a regular file; expected a FIFO
+2 --igtl-out=host: expected \[ADDRESS:\]PORT
+2 --igtl-out=:18944 expected \[ADDRESS:\]PORT
+END
 fails 1 "what is no model" "no model on" console "$T/file"
 
 # tell FILE: lines "ok NAME" and "not ok NAME: ..." as tests.
@@ -72,6 +86,21 @@ cp "$T/muscle.sinew" "$T/muscle/mesh.sinew"
 echo 'half: *=.5 # of all' >"$T/muscle/expressions.txt"
 timeout 400 python3 tests/cli/console_talk.py "$T/muscle" "$T/case" "$SINEW_BIN" "$T" "$T/page" "$T/cases" "$T/face" >"$T/talk" 2>"$T/talk.err"
 is "$?" 0 "it is talked to, to the end"
+[ ! -s "$T/talk.err" ] || diag_file "$T/talk.err"
+tell "$T/talk"
+
+# ---- What moves the probe beside a page, with stand-ins for igtl-in and igtl-out.
+mkdir "$T/steered" "$T/steering"
+cp "$SINEW_BIN/sinew-console" "$T/steered"
+# shellcheck disable=SC2016 # for the stand-ins
+{
+    printf '%s\n' '#!/bin/sh' 'echo "$*" >"$STAND_IN/in.args"' 'echo "sinew-igtl-in: connected" >&2' 'exec cat "$STAND_IN/in.fifo"' >"$T/steered/sinew-igtl-in"
+    printf '%s\n' '#!/bin/sh' 'echo "$*" >"$STAND_IN/out.args"' 'exec cat "$4" >"$STAND_IN/out.lines"' >"$T/steered/sinew-igtl-out"
+    printf '%s\n' '#!/bin/sh' 'echo "sinew-igtl-in: $1: no such host" >&2' 'exit 1' >"$T/steered/sinew-igtl-in.fails"
+}
+chmod +x "$T/steered"/sinew-igtl-*
+timeout 300 python3 tests/cli/console_steer.py "$T/case" "$T/steered" "$T/steering" "$T/page" >"$T/talk" 2>"$T/talk.err"
+is "$?" 0 "the probe is steered, to the end"
 [ ! -s "$T/talk.err" ] || diag_file "$T/talk.err"
 tell "$T/talk"
 

@@ -1,7 +1,7 @@
 // Tools that the console runs: they are found, fed, heard and ended, and none outlives it.
-// needs: common/console/child.c
+// needs: common/console/programs/child.c
 #include "base/clock.h"
-#include "console/child.h"
+#include "console/programs/child.h"
 
 #include "tap.h"
 

@@ -79,6 +79,28 @@ static void twist(void)
     ok(most <= PI + 1e-12 && most > 3, "the shorter way round");
 }
 
+/* The velocity and the turn of a screw, seen in the body, lead along it. */
+static void along(void)
+{
+    const double still[3] = {0, 0, 0};
+    double worst = 0;
+    for (int k = 0; k < 500; k++) {
+        const pose a = any_pose(), b = any_pose();
+        const screw s = screw_of(&a, &b);
+        const pose turned = {.quaternion = {a.quaternion[0], a.quaternion[1], a.quaternion[2], a.quaternion[3]}};
+        double way[3], axis[3];
+        pose_apply_inverse(&turned, s.way, way);
+        pose_apply_inverse(&turned, s.axis, axis);
+        for (int i = 0; i < 3; i++)
+            axis[i] *= s.angle;
+        const pose got = screw_along(&a, way, axis);
+        worst = fmax(worst, poses_apart(&got, &b));
+    }
+    near_(worst, 0, 1e-12, "along a screw to its end");
+    const pose a = any_pose(), same = screw_along(&a, still, still);
+    near_(poses_apart(&same, &a), 0, 1e-15, "and nowhere");
+}
+
 static void straight(void)
 {
     const pose a = any_pose();
@@ -153,6 +175,7 @@ int main(void)
     helix(2e-5);
     helix(1e-9);
     twist();
+    along();
     straight();
     gaps();
     samples("sphere", probe_sphere(.02), .1);

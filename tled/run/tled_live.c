@@ -5,6 +5,7 @@
 #include "base/num.h"
 #include "live/lines.h"
 #include "live/live_clock.h"
+#include "live/spnav.h"
 #include "live/stop.h"
 #include "tled/problem/bodies.h"
 #include "tled/problem/step.h"
@@ -64,6 +65,8 @@ static int check_sources(const struct options *o, err *e)
     for (int i = 0; i < 4; i++)
         if (o->replay && came[i])
             return err_usage(e, "--replay with --%s; expected the record alone, which has what came", names[i]);
+    if (!o->live && spnav_refuse(o->poses, e))
+        return -1;
     if (o->lines && !o->live)
         return err_usage(e, "--control without --live; expected both, or --script for what changes in time");
     if (o->rate >= 0 && !o->live && !o->replay)

@@ -173,6 +173,7 @@ function newCase() {
 function takeShape(state) {
     const shape = typeof state.probe === "string" ? state.probe : (state.probe || {}).shape;
     byId("shape").hidden = !shape;
+    byId("from").textContent = (state.probe || {}).from || "hand";
     if (!view) return;
     if (shape !== view.shapeWords) {
         view.setProbe(shape);

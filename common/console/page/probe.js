@@ -13,6 +13,8 @@ const degree = Math.PI / 180;
 // ms: for so long after the hand's last move frames do not move what it holds; for so long where they lag behind it.
 const FOLLOW = 400;
 const LAG = 5000;
+// A hand that drags says so at least so often, ms, also where it is still: a tracker waits for it.
+const STILL = 300;
 
 const LIMITS = {
     depth: [-30, 40],
@@ -190,6 +192,7 @@ export class Probe {
         if (event.button !== 0 || !this.grabs(event)) return;
         const [x, y] = this.view.project(this.at);
         this.dragging = {x: event.clientX, y: event.clientY, off: [event.clientX - x, event.clientY - y]};
+        this.still = setInterval(() => this.send(this.pose()), STILL);
         this.view.orbit.enabled = false;
         this.view.canvas.setPointerCapture(event.pointerId);
         this.view.canvas.focus();
@@ -228,6 +231,7 @@ export class Probe {
     up(event) {
         if (!this.dragging) return;
         this.dragging = null;
+        clearInterval(this.still);
         this.view.orbit.enabled = true;
         this.view.canvas.releasePointerCapture(event.pointerId);
     }

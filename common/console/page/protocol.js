@@ -6,7 +6,8 @@
 //     case       the name of the one that is open, or null; kind: "ultrasound", "face" or null
 //     tool       {name, method, methods, settings}, of the tool that computes
 //     image      {settings}, of us-slice      settings: {KEY: {value, unit, default, help, min, max, choices}}
-//     probe      {shape, pose}                pose: tx ty tz qx qy qz qw, in metres, or null
+//     probe      {shape, pose, from}          pose: tx ty tz qx qy qz qw, in metres, or null; from: what has moved it
+//                                             last, "hand", "3D mouse", "tracker" or "lines"
 //     muscles    [{name, side, level}]        pulls: [{id, point, radius, target, stiffness}]
 //                "@NAME" of side "expression" is an expression
 //     colour     what surfaces are coloured by: "own" or one of colours      units: {COLOUR: its unit}

@@ -1,4 +1,4 @@
-#include "console/child.h"
+#include "console/programs/child.h"
 
 #include "base/clock.h"
 #include "base/thread.h"
