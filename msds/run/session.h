@@ -5,6 +5,7 @@
 #define SINEW_SESSION_H
 
 #include "cli/progress.h"
+#include "live/broadcast.h"
 #include "model/stage.h"
 #include "msds/problem/largest.h"
 #include "msds/problem/problem.h"
@@ -63,6 +64,7 @@ typedef struct session {
     method_word last_fem; /* the last but springs: what springs are compared with */
     press_moves moves;    /* of the last frame, and its plan */
     msds_plan plan;
+    broadcast *socket;    /* of --haptics; or NULL */
     body around;          /* of --body, that poses are relative to; empty where there is none */
     msds_reading reading; /* of the last frame */
     int64_t next_frame;

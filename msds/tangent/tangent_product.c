@@ -43,7 +43,7 @@ static void spring_block(const tangent_product *k, const msds_spring *s, double 
     memset(b, 0, 9 * sizeof *b);
     if (!(square > 0))
         return;
-    const double across = s->stiffness * (1 - s->rest / sqrt(square));
+    const double pulled = s->stiffness * (1 - s->rest / sqrt(square)), across = k->careful ? fmax(0, pulled) : pulled;
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++)
             b[3 * i + j] = (s->stiffness - across) * d[i] * d[j] / square + (i == j ? across : 0);
@@ -144,8 +144,9 @@ static void invert(tangent_product *k, const lanes_matrix *m)
     }
 }
 
-int tangent_product_begin(tangent_product *k, const msds_parts *of, err *e)
+int tangent_product_begin(tangent_product *k, const msds_parts *of, bool careful, err *e)
 {
+    k->careful = careful;
     k->of = *of;
     k->has = NULL;
     if (of->tissue) {
@@ -155,9 +156,9 @@ int tangent_product_begin(tangent_product *k, const msds_parts *of, err *e)
     }
     if (of->method == MSDS_SPRINGS && begin_springs(k, e))
         return -1;
-    if (of->cg && of->cg->k->turn && begin_warped(k, e))
+    if (of->cg && of->cg->k->turn && !careful && begin_warped(k, e))
         return -1;
-    if (of->cg && !of->cg->k->turn)
+    if (of->cg && (!of->cg->k->turn || careful))
         k->has = &of->cg->matrix;
     invert(k, k->has ? k->has : &of->cg->matrix);
     return 0;

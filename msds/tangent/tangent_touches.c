@@ -100,10 +100,10 @@ static void stiffen(tangent_touch *t, const contact *c, const msds_parts *from, 
             t->stiff[a][b] = -t->force * h[a][b] + (spring - grip) * t->way[a] * t->way[b] + (a == b ? grip : 0);
 }
 
-static void add(tangent_touches *to, const contact *c, const msds_parts *from)
+static void add(tangent_touches *to, const contact *c, const msds_parts *from, bool flat)
 {
     tangent_touch *t = &to->list[to->count++];
-    double x[3], h[3][3];
+    double x[3], h[3][3] = {{0}};
     *t = (tangent_touch){.own = from->order->own_node[c->node], .force = c->force};
     for (int a = 0; a < 3; a++)
         x[a] = from->p->position[3 * (int64_t)c->node + a] +
@@ -113,11 +113,12 @@ static void add(tangent_touches *to, const contact *c, const msds_parts *from)
         t->way[a] = at.way[a];
         t->arm[a] = x[a] - from->probe->origin[a];
     }
-    curvature(from->probe, x, h);
+    if (!flat)
+        curvature(from->probe, x, h);
     stiffen(t, c, from, to->held, h);
 }
 
-int tangent_touches_find(tangent_touches *to, const msds_parts *from, err *e)
+int tangent_touches_find(tangent_touches *to, const msds_parts *from, bool flat, err *e)
 {
     const contacts *c = from->contacts;
     to->count = 0;
@@ -128,7 +129,7 @@ int tangent_touches_find(tangent_touches *to, const msds_parts *from, err *e)
         return -1;
     for (int64_t i = 0; i < c->count; i++)
         if (c->list[i].force > 0)
-            add(to, &c->list[i], from);
+            add(to, &c->list[i], from, flat);
     return 0;
 }
 

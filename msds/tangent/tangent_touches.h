@@ -20,8 +20,8 @@ typedef struct tangent_touches {
     bool held; /* nodes go along their ways as the probe does */
 } tangent_touches;
 
-/* Lists them. -1 with e filled. */
-int tangent_touches_find(tangent_touches *to, const msds_parts *from, err *e);
+/* Lists them; flat: as if the probe's surface had no curvature, which takes from the stiffness. -1 with e filled. */
+int tangent_touches_find(tangent_touches *to, const msds_parts *from, bool flat, err *e);
 void tangent_touches_free(tangent_touches *t);
 
 /* How far column j moves the probe at a contact, m (a turn: m/rad). */

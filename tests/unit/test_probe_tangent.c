@@ -195,17 +195,17 @@ static void try_method(const trial *t, const probe *shape, const pose *at, const
 static void test_methods(void)
 {
     static const trial trials[] = {
-        {"springs", MSDS_SPRINGS, false, false, 0, .4, 30, 60, .005},
-        {"fem", MSDS_FEM, false, false, 0, .4, 10, 30, .001},
-        {"fem, penalty", MSDS_FEM, false, true, 0, .4, 10, 30, .001},
+        {"springs", MSDS_SPRINGS, false, false, 0, .4, 24, 60, .005},
+        {"fem", MSDS_FEM, false, false, 0, .4, 5, 40, .001},
+        {"fem, penalty", MSDS_FEM, false, true, 0, .4, 5, 40, .001},
         {"fem, friction", MSDS_FEM, false, false, .8, .4, 10, 30, .02},
-        {"exact", MSDS_EXACT, false, false, 0, .4, 6, 1, .001},
-        {"exact, penalty", MSDS_EXACT, false, true, 0, .4, 6, 1, .001},
-        {"warp", MSDS_FEM, true, false, 0, .4, 10, 30, .001},
-        {"exact-warp", MSDS_EXACT, true, false, 0, .4, 6, 1, .001},
-        {"tissue", MSDS_TISSUE, false, false, 0, .4, 10, 60, .001},
-        {"tissue, penalty", MSDS_TISSUE, false, true, 0, .4, 10, 60, .001},
-        {"tissue of nu .49", MSDS_TISSUE, false, false, 0, .49, 20, 60, .001},
+        {"exact", MSDS_EXACT, false, false, 0, .4, 4, 1, .001},
+        {"exact, penalty", MSDS_EXACT, false, true, 0, .4, 4, 1, .001},
+        {"warp", MSDS_FEM, true, false, 0, .4, 5, 40, .001},
+        {"exact-warp", MSDS_EXACT, true, false, 0, .4, 4, 1, .001},
+        {"tissue", MSDS_TISSUE, false, false, 0, .4, 4, 60, .001},
+        {"tissue, penalty", MSDS_TISSUE, false, true, 0, .4, 4, 60, .001},
+        {"tissue of nu .49", MSDS_TISSUE, false, false, 0, .49, 12, 60, .001},
     };
     const probe ball = probe_sphere(.02), box = probe_linear(.03, .012, .003);
     const pose on = {{.031, .0285, .037}, {1, 0, 0, 0}};
@@ -301,21 +301,47 @@ static void test_frames(void)
         const pose at = {{.04 + .001 * i * (i < 40) + .04 * (i >= 40), .04, .058 - .002 * sin(.3 * fmin(i, 40))},
                          {1, 0, 0, 0}};
         settle(&b, &at, 1);
-        tets_must(!probe_tangent_find(b.tangent, 3, 30, &few, &e), &e);
+        tets_must(!probe_tangent_find(b.tangent, 3, 12, &few, &e), &e);
         if (i == 0 || i == 39 || i == 59)
             tets_must(!probe_tangent_find(other, 400, 400, &many, &e), &e);
         if (i == 39)
             worst = apart(many.stiffness, few.stiffness);
         products += few.products;
     }
-    ok(worst < .01, "a moving probe's is right to %.2g, by %.3g products a frame", worst, (double)products / 60);
+    ok(worst < .03, "a moving probe's is right to %.2g, by %.3g products a frame", worst, (double)products / 60);
     ok(apart(many.stiffness, few.stiffness) < 3e-3 && few.products <= 15, "one at rest to %.2g, by %lld",
        apart(many.stiffness, few.stiffness), (long long)few.products);
     const pose away = {{.04, .04, .2}, {1, 0, 0, 0}};
     settle(&b, &away, 1);
-    tets_must(!probe_tangent_find(b.tangent, 3, 30, &few, &e), &e);
+    tets_must(!probe_tangent_find(b.tangent, 3, 12, &few, &e), &e);
     ok(few.products == 0 && few.stiffness[2][2] == 0, "what touches nothing feels nothing");
     probe_tangent_destroy(other);
+    end(&b);
+}
+
+/* Springs that are pressed so that elements turn inside out have no equilibrium that holds, and no tangent: what is
+ * told then still is a stiffness, of no more than the contacts' own. */
+static void test_buckled(void)
+{
+    const tets block = {{9, 9, 7}, {.08, .08, .06}, 1e4, .4, 1000, 2, false};
+    bench b = {.shape = probe_linear(.03, .012, .003), .iterations = 20};
+    const msds_options o = tets_options();
+    double most = 0, least = 0, springs = 0;
+    begin(&b, &block, &o);
+    b.plan = tets_plan(MSDS_SPRINGS);
+    for (int i = 0; i < 60; i++) {
+        const pose at = {{.03 + .0005 * i, .041, .06 - .0008 * fmin(i, 25)}, {1, 0, 0, 0}};
+        settle(&b, &at, 1);
+        const probe_tangent_reading r = find(&b, 3);
+        for (int j = 0; j < 3; j++) {
+            most = fmax(most, fabs(r.stiffness[j][j]));
+            least = fmin(least, r.stiffness[j][j]);
+        }
+    }
+    for (int64_t n = 0; n < b.p.nodes; n++)
+        springs += b.p.repulsion[n];
+    ok(most > 1 && most < springs && least > -.1 * most, "springs that buckle: %.3g N/m, and down to %.3g", most,
+       least);
     end(&b);
 }
 
@@ -361,6 +387,7 @@ int main(void)
     test_plate();
     test_turned();
     test_frames();
+    test_buckled();
     test_untouched();
     return done_testing();
 }
