@@ -19,6 +19,7 @@
     X(TISSUE, "the method tissue")                                                                                     \
     X(CAVITIES, "cavities: --cavity")                                                                                  \
     X(FRICTION, "friction on a probe: --friction")                                                                     \
+    X(TANGENT, "contact stiffness: --haptics")                                                                         \
     X(HISTORY, "history of elements, which the law needs")                                                             \
     X(MIXTURES, "elements mixed of two volumes")                                                                       \
     X(CURVES, "muscles with a passive stress or an optimum")                                                           \

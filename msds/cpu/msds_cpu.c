@@ -486,6 +486,27 @@ static int cpu_monitor(cpu_state *s, msds_reading *reading, err *e)
     return 0;
 }
 
+/* Exact frames have a factor; the matrix is that of conjugate gradients. */
+static int cpu_parts(cpu_state *s, msds_parts *to, err *e)
+{
+    const msds_method method = s->plan.method;
+    const bool linear = method == MSDS_FEM || method == MSDS_EXACT;
+    if (linear && !fem_of(s)->cg && make_cg(s, s->plan.warp, e))
+        return -1;
+    *to = (msds_parts){.p = s->p,
+                       .threads = s->threads,
+                       .loops = s->loops,
+                       .order = &s->order,
+                       .springs = &s->w,
+                       .place = s->precise ? s->place : NULL,
+                       .contacts = &s->contacts,
+                       .probe = s->plan.touched ? &s->plan.probe : NULL,
+                       .method = method,
+                       .cg = linear ? fem_of(s)->cg : NULL,
+                       .tissue = method == MSDS_TISSUE ? s->tissue : NULL};
+    return 0;
+}
+
 static int64_t cpu_bytes(const cpu_state *s)
 {
     int64_t bytes = s->order.slots * LANES * 20 + s->order.nodes * 90 + s->p->nodes * 24;
@@ -511,16 +532,17 @@ void msds_cpu_touch(msds_state *s, const msds_plan *plan)
     find_contacts(s, NULL, s->plan.method == MSDS_EXACT ? CONTACTS_NEAR : CONTACTS_PRESSED);
 }
 
-const msds_executor msds_cpu = {
-    .is = {.device = "cpu",
-           .features = EXECUTOR_CONTACT | EXECUTOR_WARP | EXECUTOR_TISSUE | EXECUTOR_CAVITIES | EXECUTOR_FRICTION,
-           .unusable = cpu_unusable},
-    .create = cpu_create,
-    .destroy = cpu_destroy,
-    .step = cpu_step,
-    .ready = cpu_ready,
-    .change = cpu_change,
-    .reset = cpu_reset,
-    .get = cpu_get,
-    .monitor = cpu_monitor,
-    .bytes = cpu_bytes};
+const msds_executor msds_cpu = {.is = {.device = "cpu",
+                                       .features = EXECUTOR_CONTACT | EXECUTOR_WARP | EXECUTOR_TISSUE |
+                                                   EXECUTOR_CAVITIES | EXECUTOR_FRICTION | EXECUTOR_TANGENT,
+                                       .unusable = cpu_unusable},
+                                .create = cpu_create,
+                                .destroy = cpu_destroy,
+                                .step = cpu_step,
+                                .ready = cpu_ready,
+                                .change = cpu_change,
+                                .reset = cpu_reset,
+                                .get = cpu_get,
+                                .monitor = cpu_monitor,
+                                .parts = cpu_parts,
+                                .bytes = cpu_bytes};

@@ -106,6 +106,19 @@ double tissue_change(tissue *t, const lanes_field *way)
     return tissue_nodes_sum(t, gather_work);
 }
 
+double tissue_tangent(tissue *t, const lanes_field *way, lanes_field *to)
+{
+    t->along = way;
+    t->to = to;
+    if (t->m.points)
+        tissue_groups(t, swell_work);
+    over_points(t, t->m.pressed);
+    for (int64_t i = 0; i < t->m.points; i++)
+        t->m.pressed[i] /= 1 - t->m.keep[i];
+    tissue_groups(t, tangent_work);
+    return tissue_nodes_sum(t, gather_work);
+}
+
 double tissue_stiffness(tissue *t, const lanes_field *way)
 {
     t->along = way;

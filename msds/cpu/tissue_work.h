@@ -22,6 +22,9 @@ void tissue_pull(tissue *t, lanes_field *to);
 /* t->pulled: what that changes by along a way from there. Returns way . pulled. */
 double tissue_change(tissue *t, const lanes_field *way);
 
+/* The same to another field, with the bulk modulus in full, which a pressure that is held takes frames to come to. */
+double tissue_tangent(tissue *t, const lanes_field *way, lanes_field *to);
+
 /* The same where no point's pressure changes. */
 double tissue_stiffness(tissue *t, const lanes_field *way);
 

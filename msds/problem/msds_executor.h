@@ -19,6 +19,8 @@ typedef struct msds_state msds_state; /* each executor's own */
 
 typedef struct skin_state skin_state; /* each device's own */
 
+struct msds_parts; /* msds/cpu/msds_cpu.h */
+
 /* How a device steps a skin, beside the tissue. A caller owns the state that create gives, until destroy. All but
  * create: -1 with e filled. */
 typedef struct skin_device {
@@ -56,6 +58,9 @@ typedef struct msds_executor {
     int (*get)(msds_state *state, int what, double *to, err *e);
     /* What the last step led to. */
     int (*monitor)(msds_state *state, msds_reading *reading, err *e);
+    /* What the tangent at the probe is made of (msds/tangent), as the last step left it, until the next; NULL: a device
+     * without EXECUTOR_TANGENT. -1 with e filled. */
+    int (*parts)(msds_state *state, struct msds_parts *to, err *e);
     /* Bytes of the device's memory that the state has by now. */
     int64_t (*bytes)(const msds_state *state);
 } msds_executor;

@@ -192,4 +192,40 @@ SIMPLEX_FUNCTION void simplex_warped(const simplex *s, double g[3][3], double r[
             f[c][a] = r[a][0] * t[c][0] + r[a][1] * t[c][1] + r[a][2] * t[c][2];
 }
 
+/* What those change by along d, the derivatives of a displacement. With U = R^T (I + g), R turns on by R [w], where
+ * (tr U - U) w is the axis of R^T d - d^T R; the stress R sigma(U - I) changes by R (sigma(dU) + [w] sigma(U - I)),
+ * dU = R^T d - [w] U. An element that is inverted does not turn. */
+SIMPLEX_FUNCTION void simplex_warped_along(const simplex *s, double g[3][3], double r[3][3], double d[3][3],
+                                           double f[4][3])
+{
+    double u[3][3], v[3][3], a[3][3], w[3] = {0, 0, 0}, t[4][3], more[4][3], back[3];
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++) {
+            u[i][j] = r[0][i] * (g[0][j] + (j == 0)) + r[1][i] * (g[1][j] + (j == 1)) + r[2][i] * (g[2][j] + (j == 2));
+            v[i][j] = r[0][i] * d[0][j] + r[1][i] * d[1][j] + r[2][i] * d[2][j];
+        }
+    const double axis[3] = {v[2][1] - v[1][2], v[0][2] - v[2][0], v[1][0] - v[0][1]};
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+            a[i][j] = (i == j ? u[0][0] + u[1][1] + u[2][2] : 0) - (u[i][j] + u[j][i]) / 2;
+    simplex_solve(a, axis, w);
+    for (int j = 0; j < 3; j++) {
+        const double column[3] = {u[0][j], u[1][j], u[2][j]};
+        simplex_cross(w, column, back);
+        for (int i = 0; i < 3; i++) {
+            v[i][j] -= back[i];
+            u[i][j] -= i == j;
+        }
+    }
+    simplex_force(s, v, t);
+    simplex_force(s, u, more);
+    for (int c = 0; c < 4; c++) {
+        simplex_cross(w, more[c], back);
+        for (int i = 0; i < 3; i++)
+            t[c][i] += back[i];
+        for (int i = 0; i < 3; i++)
+            f[c][i] = r[i][0] * t[c][0] + r[i][1] * t[c][1] + r[i][2] * t[c][2];
+    }
+}
+
 #endif

@@ -76,11 +76,11 @@ static void fill(stiffness *k)
     }
 }
 
-static void derivative_of(const stiffness *k, int64_t t, double g[3][3])
+static void derivative_of(const stiffness *k, const double *of, int64_t t, double g[3][3])
 {
     double u[4][3];
     for (int c = 0; c < 4; c++)
-        memcpy(u[c], k->u + 3 * (int64_t)k->p->element_node[4 * t + c], sizeof u[c]);
+        memcpy(u[c], of + 3 * (int64_t)k->p->element_node[4 * t + c], sizeof u[c]);
     simplex_derivative(&k->p->element[t], u, g);
 }
 
@@ -90,17 +90,29 @@ static void turn_work(void *context, int64_t chunk, int64_t from, int64_t to)
     double g[3][3], r[3][3];
     (void)chunk;
     for (int64_t t = from; t < to; t++) {
-        derivative_of(k, t, g);
-        simplex_rotation(g, k->turn + 4 * t, r);
+        derivative_of(k, k->u, t, g);
+        simplex_rotation(g, k->turning + 4 * t, r);
     }
+}
+
+static void turn_to(stiffness *k, const double *u, double *turn)
+{
+    k->u = u;
+    k->turning = turn;
+    pool_run(k->threads, k->p->elements, ELEMENT_CHUNK, turn_work, k);
+}
+
+void stiffness_turns(stiffness *k, const double *u, double *turn)
+{
+    memcpy(turn, k->turn, 4 * (size_t)k->p->elements * sizeof *turn);
+    turn_to(k, u, turn);
 }
 
 void stiffness_warp(stiffness *k, const double *u, bool again)
 {
     if (!k->turn)
         return;
-    k->u = u;
-    pool_run(k->threads, k->p->elements, ELEMENT_CHUNK, turn_work, k);
+    turn_to(k, u, k->turn);
     if (again)
         fill(k);
 }
@@ -111,7 +123,7 @@ static void force_work(void *context, int64_t chunk, int64_t from, int64_t to)
     double g[3][3], r[3][3], f[4][3];
     (void)chunk;
     for (int64_t t = from; t < to; t++) {
-        derivative_of(k, t, g);
+        derivative_of(k, k->u, t, g);
         if (k->turn) {
             simplex_matrix(k->turn + 4 * t, r);
             simplex_warped(&k->p->element[t], g, r, f);
@@ -140,6 +152,30 @@ void stiffness_force(stiffness *k, const double *u, double *force)
     k->u = u;
     k->sum = force;
     pool_run(k->threads, k->p->elements, ELEMENT_CHUNK, force_work, k);
+    pool_run(k->threads, k->p->nodes, NODE_CHUNK, gather_work, k);
+}
+
+static void along_work(void *context, int64_t chunk, int64_t from, int64_t to)
+{
+    stiffness *k = context;
+    double g[3][3], d[3][3], r[3][3], f[4][3];
+    (void)chunk;
+    for (int64_t t = from; t < to; t++) {
+        derivative_of(k, k->u, t, g);
+        derivative_of(k, k->way, t, d);
+        simplex_matrix(k->turned + 4 * t, r);
+        simplex_warped_along(&k->p->element[t], g, r, d, f);
+        memcpy(k->force + 12 * t, f, sizeof f);
+    }
+}
+
+void stiffness_along(stiffness *k, const double *u, const double *turn, const double *way, double *force)
+{
+    k->u = u;
+    k->turned = turn;
+    k->way = way;
+    k->sum = force;
+    pool_run(k->threads, k->p->elements, ELEMENT_CHUNK, along_work, k);
     pool_run(k->threads, k->p->nodes, NODE_CHUNK, gather_work, k);
 }
 

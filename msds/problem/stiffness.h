@@ -17,7 +17,9 @@ typedef struct stiffness {
     int32_t *corner;         /* elements x 4: element * 4 + corner, ascending a node */
     double *turn;            /* elements x 4: the quaternion that warping takes out; NULL without */
     double *force;           /* elements x 12 */
-    const double *u;         /* what is being worked on */
+    const double *u, *way;   /* what is being worked on */
+    const double *turned;
+    double *turning;
     double *sum;
 } stiffness;
 
@@ -32,5 +34,12 @@ void stiffness_warp(stiffness *k, const double *u, bool again);
 
 /* What the elements pull the nodes with at u: nodes x 3, N. */
 void stiffness_force(stiffness *k, const double *u, double *force);
+
+/* Where warping is asked for: the elements' rotations at u, from those before, to `turn` (elements x 4); k keeps its
+ * own. */
+void stiffness_turns(stiffness *k, const double *u, double *turn);
+
+/* And what the pulls there change by along a way, N/m times its unit: turns as those. */
+void stiffness_along(stiffness *k, const double *u, const double *turn, const double *way, double *force);
 
 #endif

@@ -60,14 +60,16 @@ static int check_live(const struct options *o, err *e)
     if (o->transform || o->compare)
         return err_usage(e, "--%s with --live, which takes lines of poses; expected one of the two",
                          o->transform ? "transform" : "compare");
+    if (o->haptics && !(o->probe && o->poses))
+        return err_usage(e, "--haptics without --probe and --poses, of which it tells; expected them too");
     return o->force && !o->record ? err_usage(e, "--force without --record, which it is for") : 0;
 }
 
 static int check_replay(const struct options *o, err *e)
 {
-    if (o->live || o->poses || o->marker || o->control || o->record || o->compare)
-        return err_usage(e, "--replay with --live, --poses, --marker, --control, --record or --compare; expected it "
-                            "alone: what came live is in the record, with poses as they were used");
+    if (o->live || o->poses || o->marker || o->control || o->record || o->compare || o->haptics)
+        return err_usage(e, "--replay with --live, --poses, --marker, --control, --record, --haptics or --compare; "
+                            "expected it alone: what came live is in the record, with poses as they were used");
     return 0;
 }
 
@@ -83,8 +85,8 @@ static int check_options(const struct options *o, err *e)
         return err_usage(e, "missing option --poses; expected --poses FILE");
     if (spnav_refuse(o->poses, e))
         return -1;
-    if (o->control || o->record || o->force)
-        return err_usage(e, "--control, --record and --force are for --live; expected it too");
+    if (o->control || o->record || o->force || o->haptics)
+        return err_usage(e, "--control, --record, --force and --haptics are for --live; expected it too");
     return 0;
 }
 
@@ -116,6 +118,8 @@ static int run_tool(int argc, char **argv)
         goto out;
     if (o.live)
         stop_catch();
+    if (o.haptics && !(s.socket = broadcast_open(o.haptics, &e)))
+        goto out;
     s.stage.lines_follow = o.live && (is_stdin(o.poses) || is_stdin(o.control));
     if (stage_open_output(&s.stage, &t, &e) || (o.replay && msds_record_probe(&s, &e)) ||
         stage_read(&s.stage, &s.m, &e) || session_prepare(&s, &e) || session_provenance(&s, &t, &e) ||

@@ -5,6 +5,7 @@
 #include "live/live_clock.h"
 #include "live/stop.h"
 #include "msds/run/frame_report.h"
+#include "msds/run/haptics.h"
 #include "msds/run/msds_record.h"
 #include "msds/run/settings.h"
 
@@ -18,7 +19,8 @@ static const double usual_rate = 60; /* Hz, where --rate is 0 */
 typedef struct live {
     session *s;
     lines *lines;
-    record *record; /* or NULL */
+    record *record;   /* or NULL */
+    haptics *haptics; /* or NULL */
     live_clock clock;
     double start;    /* s: the frames' time when the clock began */
     double earliest; /* s, by clock_now: of the next frame */
@@ -162,7 +164,7 @@ static int make_frame(live *l, bool posed, err *e)
         live_clock_showed(&l->clock, l->pose.came);
     live_clock_tick(&l->clock, rested ? 0 : time_taken(s, s->time - before));
     msds_record_add(l->record, s, &from, rested);
-    return 0;
+    return l->haptics ? haptics_send(l->haptics, l->pose.came, rested, e) : 0;
 }
 
 static int go_on(live *l, err *e)
@@ -194,6 +196,8 @@ static void say_end(live *l)
     tool_say(s->t, "%s; %s", frames, counts);
     if (l->rests)
         tool_say(s->t, "the tissue was put back to rest %lld times", (long long)l->rests);
+    if (l->haptics)
+        haptics_end(l->haptics);
 }
 
 static void begin(live *l)
@@ -214,6 +218,8 @@ int msds_live_run(session *s, err *e)
     s->source = s->o->poses ? s->o->poses : s->o->control;
     if (s->o->record && !(l.record = msds_record_create(s, e)))
         return -1;
+    if (s->o->haptics && !(l.haptics = haptics_create(s, e)))
+        goto out;
     l.lines = lines_open_named(s->o->poses, s->o->control, s->stage.source, e);
     if (l.lines) {
         begin(&l);
@@ -222,6 +228,8 @@ int msds_live_run(session *s, err *e)
         say_end(&l);
     }
     lines_close(l.lines);
+out:
+    haptics_destroy(l.haptics);
     record_close(l.record, &s->warnings);
     return failed;
 }

@@ -61,6 +61,8 @@ static const opt option_list[] = {
      "stiffness across its edges relative to along them [default 0.5]"},
     {OPT_INPUT, 0, "unit", NUM_UNITS_CHOICES, OPT_TEXT, TO(unit), 0, 0, NULL, 0,
      "unit of OBJ files [default the model's]"},
+    {OPT_RESULT, 0, "haptics", "SOCKET", OPT_TEXT, TO(haptics), 0, 0, NULL, OPT_OUTPUT | OPT_FILE | OPT_WRITES,
+     "--live: force and contact stiffness of frames, for devices"},
     {OPT_RESULT, 0, "record", "FILE", OPT_TEXT, TO(record), 0, 0, NULL, OPT_OUTPUT | OPT_FILE | OPT_WRITES,
      "--live: write what was done to FILE, for --replay"},
     {OPT_RESULT, 0, "force", NULL, OPT_FLAG, TO(force), 0, 0, NULL, OPT_OUTPUT, "write over a record"},

@@ -222,7 +222,8 @@ static int choose_device(session *s, err *e)
     if (session_slides(s, method, o->friction, e))
         return -1;
     const uint32_t later = o->warp && method == METHOD_MSDS ? EXECUTOR_WARP : 0; /* where FEM begins */
-    const uint32_t more = (o->friction > 0 ? EXECUTOR_FRICTION : 0) | (s->cavities.count ? EXECUTOR_CAVITIES : 0);
+    const uint32_t more = (o->friction > 0 ? EXECUTOR_FRICTION : 0) | (s->cavities.count ? EXECUTOR_CAVITIES : 0) |
+                          (o->haptics ? EXECUTOR_TANGENT : 0);
     const executor_need need = {.features = methods_features(methods_with(method, o->exact, o->warp)) | more |
                                             (o->device ? 0 : later)};
     char device[300];
@@ -297,6 +298,7 @@ int session_change(session *s, session_part part, err *e)
 
 void session_free(session *s)
 {
+    broadcast_close(s->socket);
     compare_free(s->other, s->device);
     if (s->state)
         s->device->destroy(s->state);

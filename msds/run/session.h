@@ -5,6 +5,7 @@
 #define SINEW_SESSION_H
 
 #include "cli/progress.h"
+#include "live/broadcast.h"
 #include "model/stage.h"
 #include "msds/problem/largest.h"
 #include "msds/problem/problem.h"
@@ -66,6 +67,7 @@ typedef struct session {
     msds_plan plan;
     placing placing;      /* of --body and --marker */
     body around;          /* of --body; empty where there is none */
+    broadcast *socket;    /* of --haptics; or NULL */
     msds_reading reading; /* of the last frame */
     int64_t next_frame;
     progress progress;
