@@ -171,7 +171,7 @@ EXPORT_MODULES := $(wildcard common/exchange/export_*.c)
 IMPORT_MODULES := $(wildcard common/exchange/import_*.c)
 RENDER_MODULES := $(wildcard common/render/render_*.c)
 CONSOLE_SRC := $(wildcard common/console/*.c common/console/programs/*.c)
-IGTL_IN_SRC := common/link/sinew-igtl-in.c $(wildcard common/link/track*.c)
+IGTL_IN_SRC := $(wildcard common/link/track/*.c)
 SERVE_MODULES := $(wildcard common/link/serve_*.c)
 
 define tool

@@ -4,8 +4,6 @@
 #ifndef SINEW_MSDS_CPU_H
 #define SINEW_MSDS_CPU_H
 
-#include "msds/cpu/cg.h"
-#include "msds/cpu/tissue.h"
 #include "msds/problem/msds_executor.h"
 
 extern const msds_executor msds_cpu;
@@ -14,16 +12,16 @@ extern const msds_executor msds_cpu;
  * but what the solvers work with. */
 typedef struct msds_parts {
     const msds_problem *p;
-    pool *threads;
-    const lanes *loops;
-    const sell *order;
-    const lanes_springs *springs; /* with the displacement, u, whatever the method */
-    const double *place;          /* the model's nodes x 3, m: the displacement to more digits; or NULL */
-    const contacts *contacts;     /* with their forces */
-    const probe_placed *probe;    /* NULL: nothing presses */
-    msds_method method;           /* of the last step */
-    cg *cg;                       /* of the last step's linear or warped elements; NULL: another method */
-    tissue *tissue;               /* NULL: another method */
+    struct pool *threads;
+    const struct lanes *loops;
+    const struct sell *order;
+    const struct lanes_springs *springs; /* with the displacement, u, whatever the method */
+    const double *place;                 /* the model's nodes x 3, m: the displacement to more digits; or NULL */
+    const struct contacts *contacts;     /* with their forces */
+    const struct probe_placed *probe;    /* NULL: nothing presses */
+    msds_method method;                  /* of the last step */
+    struct cg *cg;                       /* of the last step's linear or warped elements; NULL: another method */
+    struct tissue *tissue;               /* NULL: another method */
 } msds_parts;
 
 /* What msds-run's benchmark times apart: finding the nodes that the plan's probe presses, for each method's rule. */

@@ -5,7 +5,9 @@
 #ifndef SINEW_TANGENT_PRODUCT_H
 #define SINEW_TANGENT_PRODUCT_H
 
+#include "msds/cpu/cg.h"
 #include "msds/cpu/msds_cpu.h"
+#include "msds/cpu/tissue.h"
 
 typedef struct tangent_product {
     msds_parts of;

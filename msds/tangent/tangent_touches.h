@@ -4,6 +4,7 @@
 #ifndef SINEW_TANGENT_TOUCHES_H
 #define SINEW_TANGENT_TOUCHES_H
 
+#include "msds/cpu/cg.h"
 #include "msds/cpu/msds_cpu.h"
 
 typedef struct tangent_touch {

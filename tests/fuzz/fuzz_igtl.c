@@ -5,7 +5,7 @@
 #include "link/big_endian.h"
 #include "link/igtl_content.h"
 #include "link/igtl_reader.h"
-#include "link/track_pose.h"
+#include "link/track/track_pose.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-#include "link/track_lines.h"
+#include "link/track/track_lines.h"
 
 #include "base/clock.h"
 

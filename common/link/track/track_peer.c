@@ -1,4 +1,4 @@
-#include "link/track_peer.h"
+#include "link/track/track_peer.h"
 
 #include "base/mem.h"
 #include "link/igtl_content.h"

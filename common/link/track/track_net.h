@@ -4,7 +4,7 @@
 #ifndef SINEW_TRACK_NET_H
 #define SINEW_TRACK_NET_H
 
-#include "link/track.h"
+#include "link/track/track.h"
 
 enum { TRACK_PEERS = 128 };
 

@@ -1,7 +1,7 @@
 /* sinew-igtl-in: poses that other programs send by OpenIGTLink, as lines. */
 #include "base/clock.h"
 #include "cli/tool.h"
-#include "link/track_net.h"
+#include "link/track/track_net.h"
 #include "live/stop.h"
 
 #include <inttypes.h>

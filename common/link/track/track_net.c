@@ -1,4 +1,4 @@
-#include "link/track_net.h"
+#include "link/track/track_net.h"
 
 #include "base/clock.h"
 

@@ -4,7 +4,7 @@
 #ifndef SINEW_TRACK_NAMES_H
 #define SINEW_TRACK_NAMES_H
 
-#include "link/track_pose.h"
+#include "link/track/track_pose.h"
 
 enum { TRACK_ROWS = 200, TRACK_LIST = 700 };
 

@@ -7,10 +7,10 @@
 
 #include "base/space.h"
 #include "cli/tool.h"
-#include "link/track_lines.h"
-#include "link/track_names.h"
-#include "link/track_peer.h"
-#include "link/track_time.h"
+#include "link/track/track_lines.h"
+#include "link/track/track_names.h"
+#include "link/track/track_peer.h"
+#include "link/track/track_time.h"
 
 typedef struct track_plan {
     const char *transform; /* NULL: the one that is there */

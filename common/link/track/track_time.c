@@ -1,4 +1,4 @@
-#include "link/track_time.h"
+#include "link/track/track_time.h"
 
 #include "link/igtl.h"
 

@@ -1,4 +1,4 @@
-#include "link/track_pose.h"
+#include "link/track/track_pose.h"
 
 #include "base/chars.h"
 #include "base/pose.h"

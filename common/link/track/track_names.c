@@ -1,4 +1,4 @@
-#include "link/track_names.h"
+#include "link/track/track_names.h"
 
 #include "cli/listing.h"
 

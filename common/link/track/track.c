@@ -1,4 +1,4 @@
-#include "link/track.h"
+#include "link/track/track.h"
 
 #include "base/chars.h"
 #include "base/clock.h"
