@@ -68,7 +68,7 @@ def compare_poses(messages, path):
         places.setdefault(tuple(round(matrix[a][3], 2) for a in range(3)), []).append(matrix)
 
     def is_one(matrix):
-        near = itertools.product(*((round(matrix[a][3] + step, 2) for step in (-.005, 0, .005)) for a in range(3)))
+        near = itertools.product(*([round(matrix[a][3] + step, 2) for step in (-.005, 0, .005)] for a in range(3)))
         return any(max(abs(matrix[r][c] - m[r][c]) for r in range(3) for c in range(4)) < 1e-3 for key in near for m in places.get(key, ()))
 
     return report("poses", len(came), sum(is_one(matrix) for matrix in came), "one of the tracker's")
