@@ -1,7 +1,7 @@
 /* Any bytes as a stream of OpenIGTLink, in pieces whose sizes the first byte decides: they come to the same messages
  * and errors as in one piece; each content is read, and what is read can be written and read again.
  */
-// needs: common/link/track_pose.c
+// needs: common/link/track/track_pose.c
 #include "link/big_endian.h"
 #include "link/igtl_content.h"
 #include "link/igtl_reader.h"
