@@ -390,14 +390,15 @@ PAGE_FILES = $(wildcard common/console/page/*.*)
 # Files of materials, which sinew materials lists; in the folder of samples too.
 PRESETDIR = $(DESTDIR)$(PREFIX)/share/sinew/materials
 PRESETS = $(wildcard samples/*.materials)
-SAMPLES = $(filter-out samples/demo samples/arm samples/scan samples/console samples/paper samples/paper.d,$(wildcard samples/*))
+SAMPLES = $(filter-out samples/demo samples/arm samples/scan samples/console samples/paper samples/paper.d samples/igtl,$(wildcard samples/*))
 
 install: all
-	$(INSTALL) -d $(BINDIR) $(COMPLETIONDIR) $(ZSHDIR) $(SAMPLEDIR) $(PAGEDIR) $(PRESETDIR) $(MANDIR)/man1 $(MANDIR)/man5 $(MANDIR)/man7
+	$(INSTALL) -d $(BINDIR) $(COMPLETIONDIR) $(ZSHDIR) $(SAMPLEDIR)/igtl $(PAGEDIR) $(PRESETDIR) $(MANDIR)/man1 $(MANDIR)/man5 $(MANDIR)/man7
 	$(INSTALL) -m 755 $(TOOLS:%=$(BIN)/%) $(BINDIR)
 	ln -sf voxelise $(BINDIR)/voxelize
 	for section in 1 5 7; do $(INSTALL) -m 644 man/*.$$section $(MANDIR)/man$$section || exit 1; done
 	$(INSTALL) -m 644 $(SAMPLES) $(SAMPLEDIR)
+	$(INSTALL) -m 644 $(wildcard samples/igtl/*.xml samples/igtl/*.py) $(SAMPLEDIR)/igtl
 	$(INSTALL) -m 644 $(PRESETS) $(PRESETDIR)
 	$(if $(PAGE_FILES),$(INSTALL) -m 644 $(PAGE_FILES) $(PAGEDIR))
 	for tool in $(COMPLETIONS); do $(BIN)/$$tool --table bash >$(COMPLETIONDIR)/$$tool || exit 1; done

@@ -49,7 +49,7 @@ run far --method tissue --friction .3 --threads 3
 check "for any number of threads" cmp "$T/run.sinew" "$T/one.sinew"
 for vectors in plain AVX2 AVX-512; do
     rm -f "$T/run.sinew"
-    SINEW_VECTORS=$vectors run far --method tissue --friction .3 2>"$T/said"
+    SINEW_VECTORS=$vectors run far --method tissue --friction .3 2>/dev/null # run keeps what msds-run says
     if ! grep -q SINEW_VECTORS "$T/said"; then
         check "and by $vectors" cmp "$T/run.sinew" "$T/one.sinew"
     else

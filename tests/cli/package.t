@@ -52,8 +52,8 @@ while read -r target link; do
     check "$link leads to something" test -e "$root/$target"
 done <debian/sinew.links
 is "$(sed -n '/^ Redistribution/,$p' debian/copyright | sed 's/^ //; s/^\.$//')" "$(sed -n '/^Redistribution/,$p' LICENSE)" "debian/copyright has the text of LICENSE"
-# What .ci/setup installs for a build; libccd and clang are for tests, and Debian has libc6-dev wherever packages are built.
-sed -n 's/^ *want \(lib[^ ]*-dev\|zlib[^ ]*-dev\) .*/\1/p' .ci/setup | grep -v '^libccd-dev$\|^libc6-dev$\|^libclang' >"$T/wanted"
+# What .ci/setup installs for a build; libccd, clang and libopenigtlink are for tests, and Debian has libc6-dev wherever packages are built.
+sed -n 's/^ *want \(lib[^ ]*-dev\|zlib[^ ]*-dev\) .*/\1/p' .ci/setup | grep -v '^libccd-dev$\|^libc6-dev$\|^libclang\|^libopenigtlink' >"$T/wanted"
 while read -r package; do
     check "the package is built with $package" grep -qw -e "$package" debian/control
 done <"$T/wanted"
