@@ -25,7 +25,7 @@ static const opt option_list[] = {{OPT_INPUT, 0, "page", "FOLDER", OPT_TEXT, TO(
                                   {OPT_INPUT, 0, "three", "FOLDER", OPT_TEXT, TO(three), 0, 0, NULL, OPT_FILE,
                                    "another copy of three.js [default /usr/share/javascript/three]"},
                                   {OPT_INPUT, 0, "poses", "SOURCE", OPT_TEXT, TO(poses), 0, 0, "spnav:|igtl:", OPT_FILE,
-                                   "move the probe too: a FIFO, spnav: or igtl:HOST:PORT[,TRANSFORM]"},
+                                   "move the probe too: a FIFO, spnav: or igtl:HOST:PORT,NAME"},
                                   {OPT_ACTION, 0, "listen", "[ADDRESS:]PORT", OPT_TEXT, TO(listen), 0, 0, NULL, 0,
                                    "where to serve it [default 127.0.0.1 and a free port]"},
                                   {OPT_ACTION, 0, "igtl-out", "[ADDRESS:]PORT", OPT_TEXT, TO(igtl_out), 0, 0, NULL, 0,

@@ -49,7 +49,7 @@ static const opt_tool table = {
     .usage = "[options] from to > motion",
     .purpose = "Finds the rigid motion that takes points to the same points as they were picked\nin another frame, for "
                "--body and --marker, and tells what is left between them.",
-    .note = "FROM and TO are .fcsv of 3D Slicer, or text: x y z, or NAME x y z, a point a line.",
+    .note = "FROM and TO: .fcsv of 3D Slicer, or lines of text, x y z or NAME x y z.",
     .example = "sinew register --unit mm scan.fcsv touched.txt > body.tum",
     .operands = "FROM TO",
     .operands_min = 2,

@@ -102,10 +102,31 @@ def report(what, came, same, how):
     return came != same or not came
 
 
+def latency(messages, poses, folder):
+    """From when the tracker sent a pose until its first image was here: ms."""
+    from tracker import read_poses
+    made, last, took = read_poses(poses), -1, []
+    with open(os.path.join(folder, "sent")) as file:
+        sent = [(float(when), int(index)) for when, index in (line.split() for line in file)]
+    for message in messages:
+        if message.kind != "IMAGE":
+            continue
+        matrix = igtl.image_of(message.content)[1]
+        face = matrix[2][3] - matrix[2][1] / 2  # the middle of the first pixel is half a pixel into the tissue
+        when, index = next(((when, i) for when, i in reversed(sent) if when < message.came and abs(face - made[i][2][3]) < 1e-3), (0, -1))
+        if index > last:
+            took.append(1e3 * (message.came - when))
+            last = index
+    took = sorted(took[10:])
+    if took:
+        print("pose sent to image received: median %.1f ms, 95 %% %.1f ms, of %d poses" % (took[len(took) // 2], took[len(took) * 95 // 100], len(took)))
+
+
 def compare(folder, images, poses, surfaces):
     with open(os.path.join(folder, "messages"), "rb") as file:
         messages = pickle.load(file)
     wrong = compare_images(messages, images) + compare_poses(messages, poses)
+    latency(messages, poses, folder)
     return wrong + sum(compare_surface(messages, *surface.split("=", 1)) for surface in surfaces)
 
 
