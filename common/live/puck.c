@@ -32,37 +32,38 @@ static int take_number(const char *key, const char *text, double low, double hig
 
 static int take_key(const char *key, char *value, puck_plan *to, err *e)
 {
-    if (!strcmp(key, to->mouse ? "reach" : "speed"))
+    if (!strcmp(key, to->joystick ? "reach" : "speed"))
         return take_length(key, value, &to->way, e);
     if (!strcmp(key, "turn")) {
         const int failed = take_number(key, value, .1, 3600, &to->turn, e);
         to->turn *= DEGREE;
         return failed;
     }
-    if (!strcmp(key, "hold") && !to->mouse)
+    if (!strcmp(key, "hold") && !to->joystick)
         return take_number(key, value, .02, 10, &to->hold, e);
     return err_usage(e, "spnav: unknown '%.60s=' of a %s; expected %sstart=FILE at the end", key,
-                     to->mouse ? "mouse" : "joystick",
-                     to->mouse ? "reach=LENGTH, turn=DEGREES, and " : "speed=LENGTH, turn=DEGREES, hold=SECONDS, and ");
+                     to->joystick ? "joystick" : "mouse",
+                     to->joystick ? "reach=LENGTH, turn=DEGREES, and "
+                                  : "speed=LENGTH, turn=DEGREES, hold=SECONDS, and ");
 }
 
 /* One word; the first may be what the puck is. */
 static int take_word(char *word, bool first, puck_plan *to, err *e)
 {
     char *equals = strchr(word, '=');
-    if (first && (!*word || !strcmp(word, "joystick") || !strcmp(word, "mouse")))
+    if (first && (!*word || !strcmp(word, "mouse") || !strcmp(word, "joystick")))
         return 0;
     if (!equals)
-        return err_usage(e, "spnav: '%.60s'; expected joystick or mouse, then KEY=VALUE between commas", word);
+        return err_usage(e, "spnav: '%.60s'; expected mouse or joystick, then KEY=VALUE between commas", word);
     *equals = '\0';
     return take_key(word, equals + 1, to, e);
 }
 
 int puck_plan_read(const char *words, puck_plan *to, err *e)
 {
-    *to = (puck_plan){.mouse = !strncmp(words, "mouse", strlen("mouse")), .hold = .3};
-    to->way = to->mouse ? .02 : .05;
-    to->turn = (to->mouse ? 30 : 45) * DEGREE;
+    *to = (puck_plan){.joystick = !strncmp(words, "joystick", strlen("joystick")), .hold = .3};
+    to->way = to->joystick ? .02 : .05;
+    to->turn = (to->joystick ? 30 : 45) * DEGREE;
     if (snprintf(to->text, sizeof to->text, "%s", words) >= (int)sizeof to->text)
         return err_usage(e, "spnav: more than %d bytes", PUCK_WORD);
     bool first = true;
@@ -97,7 +98,7 @@ void puck_place(puck *p, const pose *at, double now)
 
 bool puck_moves(const puck *p, double now)
 {
-    if (!p->placed || p->held || p->plan->mouse || now >= p->until)
+    if (!p->placed || p->held || p->plan->joystick || now >= p->until)
         return false;
     for (int a = 0; a < 3; a++)
         if (p->way[a] != 0 || p->turn[a] != 0)
@@ -105,7 +106,7 @@ bool puck_moves(const puck *p, double now)
     return false;
 }
 
-/* A joystick's velocity is constant between two events, so the motion is a screw's, whatever times it is cut at. */
+/* A mouse's velocity is constant between two events, so the motion is a screw's, whatever times it is cut at. */
 void puck_advance(puck *p, double now)
 {
     const double seconds = fmin(now, p->until) - p->time;
@@ -131,12 +132,12 @@ static int take_motion(puck *p, const int32_t event[8], err *e)
         p->turn[a] = turned[a] * p->plan->turn / PUCK_FULL;
     }
     p->until = p->time + p->plan->hold;
-    if (p->plan->mouse && p->placed && !p->held)
+    if (p->plan->joystick && p->placed && !p->held)
         p->at = screw_along(&p->from, p->way, p->turn);
     return 0;
 }
 
-/* A mouse goes on from where the probe is, without a jump, whatever the deflection is. */
+/* A joystick goes on from where the probe is, without a jump, whatever the deflection is. */
 static void go_on_from_here(puck *p)
 {
     double back[3], turned_back[3];

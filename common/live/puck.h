@@ -1,5 +1,5 @@
-/* A 3D mouse as a probe: how far its puck is deflected, event by event, becomes where the probe is. As a joystick, a
- * deflection is a velocity; as a mouse, it is the way from where the probe stands. No input and no output: who reads
+/* A 3D mouse as a probe: how far its puck is deflected, event by event, becomes where the probe is. As a mouse, a
+ * deflection is a velocity; as a joystick, it is the way from where the probe stands. No input and no output: who reads
  * the device gives events and times. Owns nothing but its plan's texts, which are the caller's.
  *
  * The puck has x to the right, y up and z away from the user, and its turns are about these axes, right-handed, as
@@ -22,14 +22,14 @@ enum {
 };
 
 typedef struct puck_plan {
-    bool mouse;           /* else a joystick */
-    double way, turn;     /* at full deflection. Joystick: m/s and radians a second; mouse: m and radians */
-    double hold;          /* s: for so long a joystick's deflection counts without a further event */
+    bool joystick;        /* else a mouse */
+    double way, turn;     /* at full deflection. Mouse: m/s and radians a second; joystick: m and radians */
+    double hold;          /* s: for so long a mouse's deflection counts without a further event */
     char text[PUCK_WORD]; /* the words, cut */
     const char *start;    /* in text: the file whose first pose is where the probe begins; NULL: none was named */
 } puck_plan;
 
-/* Reads "[joystick|mouse][,speed=LENGTH][,reach=LENGTH][,turn=DEGREES][,hold=SECONDS][,start=FILE]"; start is the
+/* Reads "[mouse|joystick][,speed=LENGTH][,reach=LENGTH][,turn=DEGREES][,hold=SECONDS][,start=FILE]"; start is the
  * last, as a file's name may have commas. -1 with e filled (usage). */
 int puck_plan_read(const char *words, puck_plan *to, err *e);
 
@@ -38,7 +38,7 @@ typedef struct puck {
     bool placed;            /* where the probe is, is known */
     bool held;              /* by the second button */
     pose start;             /* where it was put last: the first button brings it back there */
-    pose from;              /* mouse: what the deflection counts from */
+    pose from;              /* joystick: what the deflection counts from */
     pose at;                /* now */
     double way[3], turn[3]; /* the deflection in the probe's frame, scaled as the plan says */
     double time;            /* s: `at` is of this time */

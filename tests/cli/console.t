@@ -37,7 +37,7 @@ done <<'END'
 2 --poses=igtl:localhost:0 expected igtl:HOST:PORT
 2 --poses=igtl:localhost:18944, expected igtl:HOST:PORT
 2 --poses=spnav:start=a.tum expected no start=
-2 --poses=spnav:x expected joystick or mouse
+2 --poses=spnav:x expected mouse or joystick
 1 --poses=spnav: cannot connect: No such file.*expected spacenavd
 1 --poses=tests/cli/small.sinew is a regular file; expected a FIFO
 2 --igtl-out=host: expected \[ADDRESS:\]PORT

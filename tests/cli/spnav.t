@@ -55,10 +55,10 @@ slice="us-slice --rigid --probe linear:2mm,1mm --size 8x8"
 # shellcheck disable=SC2086 # options
 {
     fails 1 "no daemon" "$T/socket: cannot connect: No such file or directory; expected spacenavd to run" \
-        $slice --live --poses spnav:mouse,start=zero.tum v.nrrd
-    fails 2 "us-slice that is not live" "spnav:mouse without --live; expected both" $slice --poses spnav:mouse v.nrrd
+        $slice --live --poses spnav:joystick,start=zero.tum v.nrrd
+    fails 2 "us-slice that is not live" "spnav:joystick without --live; expected both" $slice --poses spnav:joystick v.nrrd
     fails 2 "a probe that is nowhere" "where the probe begins is not said; expected start=FILE" $slice --live --poses spnav: v.nrrd
-    fails 2 "controls from a mouse" "poses alone" $slice --live --poses control --control spnav: v.nrrd
+    fails 2 "controls from a 3D mouse" "poses alone" $slice --live --poses control --control spnav: v.nrrd
     fails 2 "a key that is not there" "unknown 'sped='.*speed=LENGTH" $slice --live --poses spnav:sped=1,start=zero.tum v.nrrd
 }
 # shellcheck disable=SC2016 # for the inner shell
@@ -67,10 +67,10 @@ slice="us-slice --rigid --probe linear:2mm,1mm --size 8x8"
     fails 2 "tled-run that is not live" "without --live" sh -c 'tled-run --probe sphere:1cm --poses spnav: <tled.sinew'
 }
 
-# ---- us-slice: a mouse, whose poses are those of its events.
+# ---- us-slice: a joystick, whose poses are those of its events.
 daemon
 # shellcheck disable=SC2086 # options
-$slice -q --live --poses spnav:mouse,reach=7mm,turn=90,start=zero.tum --record a.rec -o a.pgm v.nrrd 2>said &
+$slice -q --live --poses spnav:joystick,reach=7mm,turn=90,start=zero.tum --record a.rec -o a.pgm v.nrrd 2>said &
 run=$!
 check "the probe begins where start= says" until_seen a.rec 'pose=0,0,0,0,0,0,1( |$)'
 echo 'motion 350 0 0 0 0 0' >&3
@@ -95,9 +95,9 @@ end us-slice
 check "its record is replayed" $slice -q --replay a.rec -o b.pgm v.nrrd
 check "to the same bytes" cmp a.pgm b.pgm
 
-# ---- msds-run: a joystick, which a control puts to its place.
+# ---- msds-run: a mouse, which a control puts to its place.
 daemon
-msds-run --live --text --probe sphere:1cm --poses spnav:joystick,speed=4cm --control control --record m.rec <block.sinew >m.sinew 2>said &
+msds-run --live --text --probe sphere:1cm --poses spnav:mouse,speed=4cm --control control --record m.rec <block.sinew >m.sinew 2>said &
 run=$!
 exec 4>control
 cat above.tum >&4
@@ -122,7 +122,7 @@ is "$(awk '/^frame/ { for (i = 1; i <= NF; i++) if (sub(/^pose=/, "", $i)) { spl
 
 # ---- tled-run.
 daemon
-tled-run --live --text --probe sphere:2mm --poses spnav:mouse,reach=3mm,start=zero.tum --record t.rec <tled.sinew >t.sinew 2>said &
+tled-run --live --text --probe sphere:2mm --poses spnav:joystick,reach=3mm,start=zero.tum --record t.rec <tled.sinew >t.sinew 2>said &
 run=$!
 echo 'motion 350 0 0 0 0 0' >&3
 check "tled-run takes its poses too" until_seen t.rec 'pose=0.003,0,0,'

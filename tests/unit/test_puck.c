@@ -1,5 +1,5 @@
-/* A 3D mouse's puck as a probe: its axes; a joystick's motion against straight lines, circles and helices in closed
- * form, however its time is cut; the time after which a deflection does not count any more; a mouse's displacement;
+/* A 3D mouse's puck as a probe: its axes; a mouse's motion against straight lines, circles and helices in closed
+ * form, however its time is cut; the time after which a deflection does not count any more; a joystick's displacement;
  * the buttons; wrong events; the words of the plan.
  */
 #include "live/puck.h"
@@ -53,7 +53,7 @@ static puck placed(const puck_plan *plan)
 /* Right is x, down is z, and toward the user is y. */
 static void axes(void)
 {
-    const puck_plan plan = plan_of("joystick,hold=10");
+    const puck_plan plan = plan_of("mouse,hold=10");
     static const struct {
         int event[6];
         double at[3], axis[3];
@@ -79,7 +79,7 @@ static void axes(void)
  * velocity along y too, a helix. */
 static void helix(void)
 {
-    const puck_plan plan = plan_of("joystick,speed=7cm,turn=90,hold=10");
+    const puck_plan plan = plan_of("mouse,speed=7cm,turn=90,hold=10");
     for (int parts = 1; parts <= 1000; parts *= 10) {
         puck p = placed(&plan);
         const double v = .07, w = 90 * degree, t = 3;
@@ -119,9 +119,9 @@ static void silence(void)
     ok(!nowhere.placed && !puck_moves(&nowhere, 1.1), "and it has none");
 }
 
-static void mouse(void)
+static void joystick(void)
 {
-    const puck_plan plan = plan_of("mouse,reach=14mm,turn=10");
+    const puck_plan plan = plan_of("joystick,reach=14mm,turn=10");
     puck p = placed(&plan);
     const pose there = {{.1, .2, .3}, {1, 0, 0, 0}}; /* half round about x: its z is down */
     send(&p, 1, PUCK_MOTION, 350, 0, 0, 0, 0, 0);
@@ -140,7 +140,7 @@ static void mouse(void)
 
 static void buttons(void)
 {
-    const puck_plan stick = plan_of("hold=10"), plan = plan_of("mouse");
+    const puck_plan stick = plan_of("hold=10"), plan = plan_of("joystick");
     puck p = placed(&stick), m = placed(&plan);
     const pose there = {{1, 0, 0}, {0, 0, 0, 1}};
     send(&p, 0, PUCK_MOTION, 350, 0, 0, 0, 0, 0);
@@ -165,7 +165,7 @@ static void buttons(void)
     send(&m, 1, PUCK_MOTION, 350, 0, 0, 0, 0, 0);
     send(&m, 2, PUCK_PRESS, 1, 1, 0, 0, 0, 0);
     send(&m, 3, PUCK_MOTION, 0, 0, 0, 0, 0, 0);
-    is_at(&m, .02, 0, 0, "a mouse that is held stays where it is as the puck comes back");
+    is_at(&m, .02, 0, 0, "a joystick that is held stays where it is as the puck comes back");
     send(&m, 4, PUCK_PRESS, 1, 1, 0, 0, 0, 0);
     send(&m, 5, PUCK_MOTION, 350, 0, 0, 0, 0, 0);
     is_at(&m, .04, 0, 0, "and goes on from there");
@@ -187,18 +187,18 @@ static void wrong(void)
     }
     puck_advance(&p, 2);
     is_at(&p, 0, 0, 0, "and nothing has moved");
-    static const char *const words[] = {"stick",     "joystick,mouse",  "speed=0",      "speed=x",          "speed=11m",
-                                        "reach=1cm", "mouse,speed=1cm", "mouse,hold=1", "turn=nan",         "turn=4000",
-                                        "hold=0",    "start=",          "joystick,",    "joystick,,turn=1", "speed",
-                                        "colour=1",  "mousetrap"};
+    static const char *const words[] = {
+        "stick",           "mouse,joystick", "speed=0",   "speed=x", "speed=11m", "reach=1cm", "joystick,speed=1cm",
+        "joystick,hold=1", "turn=nan",       "turn=4000", "hold=0",  "start=",    "mouse,",    "mouse,,turn=1",
+        "speed",           "colour=1",       "mousetrap"};
     for (size_t i = 0; i < sizeof words / sizeof *words; i++) {
         err e = {0};
         puck_plan refused;
         ok(puck_plan_read(words[i], &refused, &e) && e.status == STATUS_USAGE && strstr(e.text, "expected"), "'%s': %s",
            words[i], e.text);
     }
-    const puck_plan named = plan_of("mouse,turn=5,start=a,b=c.tum");
-    ok(named.mouse && named.start && !strcmp(named.start, "a,b=c.tum"), "a file's name may have commas");
+    const puck_plan named = plan_of("joystick,turn=5,start=a,b=c.tum");
+    ok(named.joystick && named.start && !strcmp(named.start, "a,b=c.tum"), "a file's name may have commas");
     near_(named.turn, 5 * degree, 1e-15, "a turn in degrees");
 }
 
@@ -207,7 +207,7 @@ int main(void)
     axes();
     helix();
     silence();
-    mouse();
+    joystick();
     buttons();
     wrong();
     return done_testing();

@@ -1,6 +1,6 @@
 /* A 3D mouse as a source of poses, against a daemon that speaks spacenavd's protocol: eight 32-bit integers an event,
  * in parts and several at once, newer types among them, garbage, half events; a daemon that goes away and comes back;
- * poses of other sources, which the mouse goes on from; where there is no daemon.
+ * poses of other sources, which the joystick goes on from; where there is no daemon.
  */
 #include "base/clock.h"
 #include "live/lines.h"
@@ -79,7 +79,7 @@ static bool is_told(lines *l, const char *what)
     return is;
 }
 
-/* Of a mouse, whose poses are its events', whatever the clock is. */
+/* Of a joystick, whose poses are its events', whatever the clock is. */
 static void talk(lines *l, int fd)
 {
     lines_pose at;
@@ -87,7 +87,7 @@ static void talk(lines *l, int fd)
     near_(at.at.position[2], .25, 0, "in the file");
     event(fd, 0, 175, 0, 0, 8);
     near_(next_pose(l, &at), .01, 1e-12, "half a deflection");
-    ok(strstr(at.name, "spnav:mouse") && at.line == 1 && at.time >= 0 && at.time < WAIT,
+    ok(strstr(at.name, "spnav:joystick") && at.line == 1 && at.time >= 0 && at.time < WAIT,
        "the source, its event and time");
     event(fd, 6, 1, 1, 0, 0); /* UEV_RAWBUTTON of a newer daemon */
     event(fd, 3, 0, 2, 0, 0); /* UEV_DEV */
@@ -126,7 +126,7 @@ static void come_back(lines *l, int *daemon, int *fd, const char *path)
     near_(next_pose(l, &at), -.018, 1e-12, "the probe goes on from where it was");
 }
 
-/* Another source puts the probe somewhere, and the mouse goes on from there. */
+/* Another source puts the probe somewhere, and the joystick goes on from there. */
 static void place(lines *l, int fd, const char *fifo)
 {
     lines_pose at;
@@ -134,7 +134,7 @@ static void place(lines *l, int fd, const char *fifo)
     say(writer, "0 1 0 0 0 0 0 1\n", 16);
     near_(next_pose(l, &at), 1, 0, "a pose of a line");
     event(fd, 0, 350, 0, 0, 8);
-    near_(next_pose(l, &at), 1.02, 1e-12, "and the mouse from there");
+    near_(next_pose(l, &at), 1.02, 1e-12, "and the joystick from there");
     const pose there = {{3, 0, 0}, {0, 0, 0, 1}};
     lines_place(l, &there);
     event(fd, 0, 0, 0, 0, 8);
@@ -150,7 +150,7 @@ static void conversation(const char *folder)
     snprintf(path, sizeof path, "%s/socket", folder);
     snprintf(start, sizeof start, "%s/start.tum", folder);
     snprintf(fifo, sizeof fifo, "%s/fifo", folder);
-    snprintf(name, sizeof name, "spnav:mouse,start=%s", start);
+    snprintf(name, sizeof name, "spnav:joystick,start=%s", start);
     FILE *file = fopen(start, "w");
     ok(file && fputs("# where it begins\nset gain 1\n0 0 0 .25 0 0 0 1\n1 9 9 9 0 0 0 1\n", file) >= 0 && !fclose(file),
        "a start");
@@ -172,14 +172,14 @@ static void conversation(const char *folder)
     unlink(fifo);
 }
 
-/* A joystick's motion by the clock: the way is the velocity by the time for which it was deflected. */
+/* A mouse's motion by the clock: the way is the velocity by the time for which it was deflected. */
 static void drive(const char *folder)
 {
     char path[300];
     err e = {0};
     lines_pose at = {0};
     const pose none = pose_none();
-    static const char *const names[] = {"spnav:joystick,speed=10cm,hold=5"};
+    static const char *const names[] = {"spnav:mouse,speed=10cm,hold=5"};
     snprintf(path, sizeof path, "%s/socket", folder);
     const int daemon = listen_at(path);
     lines *l = lines_open(names, 1, NULL, &e);
@@ -215,7 +215,7 @@ static void refused(const char *folder)
 {
     char path[300];
     err e = {0};
-    static const char *const none[] = {"spnav:joystick"};
+    static const char *const none[] = {"spnav:mouse"};
     snprintf(path, sizeof path, "%s/nothing", folder);
     setenv("SPNAV_SOCKET", path, 1);
     ok(!lines_open(none, 1, NULL, &e) &&
@@ -227,7 +227,7 @@ static void refused(const char *folder)
     e = (err){0};
     ok(!lines_open(none, 1, NULL, &e) && strstr(e.text, "too long"), "%s", e.text);
     e = (err){0};
-    ok(!lines_open_named("spnav:mouse", NULL, NULL, &e) && e.status == STATUS_USAGE && strstr(e.text, "start=FILE"),
+    ok(!lines_open_named("spnav:joystick", NULL, NULL, &e) && e.status == STATUS_USAGE && strstr(e.text, "start=FILE"),
        "%s", e.text);
     e = (err){0};
     ok(!lines_open_named(NULL, "spnav:", NULL, &e) && e.status == STATUS_USAGE && strstr(e.text, "poses alone"), "%s",
@@ -237,7 +237,8 @@ static void refused(const char *folder)
     e = (err){0};
     ok(!lines_open_named("spnav:start=/dev/null", NULL, NULL, &e) && strstr(e.text, "no pose"), "%s", e.text);
     e = (err){0};
-    ok(spnav_refuse("spnav:mouse", &e) && strstr(e.text, "without --live") && !spnav_refuse("file", &e), "%s", e.text);
+    ok(spnav_refuse("spnav:joystick", &e) && strstr(e.text, "without --live") && !spnav_refuse("file", &e), "%s",
+       e.text);
 }
 
 int main(void)
