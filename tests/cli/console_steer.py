@@ -111,7 +111,7 @@ def try_mouse():
     atexit.register(fake.kill)
     until(lambda: os.path.exists(socket))
     os.environ["SPNAV_SOCKET"] = socket
-    console = Console("--poses", "spnav:mouse,reach=7mm")
+    console = Console("--poses", "spnav:joystick,reach=7mm")
     first = console.page.frame["pose"]
     time.sleep(0.2)  # what the puck did before the case began does not count
     fake.stdin.write("motion 350 0 0 0 0 0\n")
