@@ -10,12 +10,13 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
 static void check_motion(const points *p)
 {
-    double *x = calloc((size_t)(6 * p->count + 1), sizeof *x), *y = x + 3 * p->count, square = 0;
+    double *x = calloc((size_t)(6 * p->count + 1), sizeof *x), square = 0;
     int64_t *pair = calloc((size_t)(p->count + 1), sizeof *pair);
     registration r;
     err e = {0};
     if (!x || !pair || points_pair(p, p, "a", "b", false, pair, &e))
         abort();
+    double *y = x + 3 * p->count;
     for (int64_t i = 0; i < p->count; i++) {
         if (pair[i] != i)
             abort();
