@@ -190,7 +190,7 @@ same: all
 	tests/same $(BIN) $(WITH)
 
 # ---- benchmarks: CSV, on standard output and in out/bench.csv, a table each; tests/bench keeps one of each machine
-.PHONY: bench bench-tled bench-table1 bench-voxelise bench-geometry bench-msds bench-msds_card bench-images bench-slice bench-contact bench-fraction bench-accuracy bench-console compare-msds
+.PHONY: bench bench-tled bench-table1 bench-voxelise bench-geometry bench-msds bench-msds_card bench-images bench-slice bench-contact bench-fraction bench-accuracy bench-console bench-jobs compare-msds
 BENCHES = voxelise geometry tled msds msds_card images slice
 BENCH_HEAD = $(wildcard $(or $(SINEW_SHARED),../shared)/data/ultrasound/fetal-head)
 BENCH_FACE = $(wildcard $(or $(SINEW_SHARED),../shared)/data/face/face_zyg.obj)
@@ -241,6 +241,14 @@ bench-slice: all $(BUILD)/tests/bench/bench_slice
 	@$(BUILD)/tests/bench/bench_slice $(shell nproc) 5 out/regions.dat >out/slice.csv && cat out/slice.csv
 	@! command -v gnuplot >/dev/null || gnuplot -e "data='out/regions.dat'; picture='out/regions.png'" tests/bench/regions.plot
 	@! command -v python3 >/dev/null || python3 tests/bench/live.py $(BIN) $(shell nproc) out/slice.csv
+# Whole pipes by stage, beside the machine's limits; OLD=FOLDER of other tools: beside those, too. Many minutes on a slow machine, and so no part of bench.
+JOBS_RUN = OLD='$(OLD)' /usr/bin/python3 tests/bench/jobs.py $(BIN) $(shell nproc) 3 $(CONTACT_FACE) $(BUILD)/tests/bench/jobs-files
+JOBS_SIDES = 2.5 1.25
+JOBS_SIDES_CARD = 2.5 1.25 .625
+bench-jobs: all
+	@tests/bench/machine
+	@$(if $(CONTACT_FACE),$(JOBS_RUN) cpu $(JOBS_SIDES),echo '# skipped: no face_all.obj in SINEW_SHARED')
+	@! nvidia-smi >/dev/null 2>&1 || $(if $(CONTACT_FACE),$(JOBS_RUN) cuda $(JOBS_SIDES_CARD),true)
 # What the console's page shows a second, in headless chromium: the delay from a pose to its image; PST's Table II; W&M's Table 1.
 bench-console: all
 	@SINEW_BIN=$(BIN) /usr/bin/python3 tests/browser/bench_console.py
@@ -454,6 +462,7 @@ help:
 	'make compare-msds    how far springs are from finite elements' \
 	'make bench-fraction  how fast models converge, by centres and by shares' \
 	'make bench-accuracy  error against wall time, beside CalculiX; out/accuracy.csv and out/accuracy.svg' \
+	'make bench-jobs      whole pipes by stage, beside the machine; OLD=FOLDER of tools: beside those, too' \
 	'make bench-console   what the page of sinew console shows a second, in headless chromium' \
 	'make html         set-up, and the manual pages as HTML, into out/man' \
 	'make install      into PREFIX=$(PREFIX) (DESTDIR is heeded); make uninstall takes it away' \
