@@ -7,10 +7,12 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* A search outwards: nodes in the order in which they were reached. */
 typedef struct search {
     int32_t *steps, *queue; /* nodes: from where it began, or -1; nodes */
+    uint8_t *spread;        /* elements: whether all of its nodes were reached from one of them */
     int64_t count;
 } search;
 
@@ -22,16 +24,22 @@ static void reach_node(search *s, int32_t node, int32_t step)
     s->queue[s->count++] = node;
 }
 
-/* Goes on from node `at` of the queue: a node is one step farther than the nearest node of an element that it is in. */
+/* Goes on from node `at` of the queue: a node is one step farther than the nearest node of an element that it is in.
+ * The first of an element's nodes is its nearest, so that the others reach nothing through it. */
 static void spread(const tled_problem *p, search *s, int64_t at)
 {
     for (; at < s->count; at++) {
         int64_t node = s->queue[at];
         const int64_t first = p->corner_start ? p->corner_start[node] : 8 * node;
         const int64_t end = p->corner_start ? p->corner_start[node + 1] : first + 8;
-        for (int64_t i = first; i < end && p->corner[i] < p->elements * 8; i++)
+        for (int64_t i = first; i < end && p->corner[i] < p->elements * 8; i++) {
+            const int64_t element = p->corner[i] / 8;
+            if (s->spread[element])
+                continue;
+            s->spread[element] = 1;
             for (int c = 0; c < 8; c++)
-                reach_node(s, p->element_node[p->corner[i] / 8 * 8 + c], s->steps[node] + 1);
+                reach_node(s, p->element_node[8 * element + c], s->steps[node] + 1);
+        }
     }
 }
 
@@ -98,6 +106,7 @@ static int32_t search_from_held(const tled_problem *p, search *s, unsigned compo
     s->count = 0;
     for (int64_t n = 0; n < p->nodes; n++)
         s->steps[n] = -1;
+    memset(s->spread, 0, (size_t)p->elements);
     for (int64_t n = 0; n < p->nodes; n++)
         if (is_held(p, n, components))
             reach_node(s, (int32_t)n, 0);
@@ -150,18 +159,20 @@ static int32_t search_components(const tled_problem *p, search *s, support *of)
 int support_of(const tled_problem *p, support *of, err *e)
 {
     search s = {mem_array(p->nodes, sizeof *s.steps, "what is held", e),
-                mem_array(p->nodes, sizeof *s.queue, "what is held", e), 0};
+                mem_array(p->nodes, sizeof *s.queue, "what is held", e),
+                mem_array(p->elements, sizeof *s.spread, "what is held", e), 0};
+    const bool done = s.steps && s.queue && s.spread;
     *of = (support){.falling = -1};
-    if (s.steps && s.queue) {
+    if (done) {
         const bool alike = is_held_alike(p);
         const int32_t apart = alike ? 0 : search_components(p, &s, of), whole = search_from_held(p, &s, 7);
         const int32_t farthest = alike && s.count ? whole + !whole : apart; /* where all is held, one */
         of->reach = farthest ? farthest * fmax(p->side[0], fmax(p->side[1], p->side[2])) : diagonal(p);
         find_loose(p, &s, of);
     }
-    bool done = s.steps && s.queue;
     free(s.steps);
     free(s.queue);
+    free(s.spread);
     return done ? 0 : -1;
 }
 
