@@ -7,6 +7,7 @@
 #ifndef SINEW_STATE_H
 #define SINEW_STATE_H
 
+#include "base/pool.h"
 #include "mesh/cut_moments.h"
 #include "mesh/fibres.h"
 #include "physics/forms.h"
@@ -43,6 +44,7 @@ typedef struct tled_volume {
 } tled_volume;
 
 typedef struct tled_problem {
+    pool *threads; /* that make it and look at it before a run, borrowed; NULL: the caller's thread alone */
     int64_t nodes, elements;
     int32_t volumes;
     enum form form;                /* that all laws are expressed in */
@@ -122,7 +124,7 @@ enum { TLED_DISPLACEMENT, TLED_VELOCITY, TLED_CONTRACTILE, TLED_MIXCONTRACTILE, 
  * displacements. */
 enum { PASS_FINISH = 1, PASS_BEGIN = 2, PASS_INTERNAL = 4 };
 
-/* Makes p (zeroed) of the model, at rest at time 0: all its elements must be its lattice's boxes, or it has no lattice.
+/* Makes p (zeroed but for its threads) of the model, at rest at time 0: all its elements must be its lattice's boxes, or it has no lattice.
  * control: of hourglass modes. -1 with e filled and p to be freed all the same. */
 int tled_problem_make(tled_problem *p, const model *m, const script *s, hourglass_control control, err *e);
 void tled_problem_free(tled_problem *p);

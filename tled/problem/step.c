@@ -1,11 +1,13 @@
 #include "tled/problem/step.h"
 
+#include "base/mem.h"
 #include "tled/problem/conforming_step.h"
 #include "tled/problem/cut.h"
 #include "tled/problem/films.h"
 #include "tled/problem/muscle_fibre.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 step_fibres step_fibres_of(const tled_problem *p, int64_t element, const double *value)
 {
@@ -125,6 +127,8 @@ static double higher(const tled_problem *p, int64_t element, double highest)
 {
     const float *moments = tled_cut(p, element);
     const double *border = tled_border(p, element);
+    if (!border && !moments && !p->fibres.of)
+        return fmax(highest, square_at_rest(p, element));
     step_fibres fibres = step_fibres_of(p, element, NULL);
     if (border)
         return fmax(highest,
@@ -153,20 +157,63 @@ double step_element_at_rest(const tled_problem *p, int64_t element)
     return cut_raises(p, element, moments) * square + cut_twists(p, element, moments, whole).more;
 }
 
-double step_elements_at_rest(const tled_problem *p, int32_t *volume)
+enum { CHUNK = 4096 }; /* elements */
+
+/* The squares of chunks of elements. */
+typedef struct squares {
+    const tled_problem *p;
+    double *of; /* chunks: the highest square of each, searched alone */
+} squares;
+
+static void squares_work(void *context, int64_t chunk, int64_t from, int64_t to)
 {
+    const squares *s = context;
     double highest = 0;
-    if (p->conforming) {
-        if (volume)
-            *volume = p->element_volume[p->conforming->stiffest];
-        return p->conforming->square;
-    }
-    for (int64_t i = 0; i < p->elements; i++) {
+    for (int64_t i = from; i < to; i++)
+        highest = higher(s->p, i, highest);
+    s->of[chunk] = highest;
+}
+
+/* One element after the other: whether a matrix is computed depends on what came before, and so may the last digits. */
+static double go_on(const tled_problem *p, int64_t from, int64_t to, double highest, int32_t *volume)
+{
+    for (int64_t i = from; i < to; i++) {
         const double square = higher(p, i, highest);
         if (square > highest && volume)
             *volume = p->element_volume[i];
         highest = square;
     }
+    return highest;
+}
+
+/* Chunks that are clearly below the highest before them change nothing, and are passed over: the result is that of
+ * one element after the other, to the last bit. */
+static double pass_over(const squares *s, int32_t *volume)
+{
+    const tled_problem *p = s->p;
+    double highest = 0;
+    for (int64_t from = 0, c = 0; from < p->elements; from += CHUNK, c++)
+        if (!(s->of[c] * (1 + 1e-9) < highest))
+            highest = go_on(p, from, p->elements - from < CHUNK ? p->elements : from + CHUNK, highest, volume);
+    return highest;
+}
+
+double step_elements_at_rest(const tled_problem *p, int32_t *volume)
+{
+    err ignored = {0};
+    if (p->conforming) {
+        if (volume)
+            *volume = p->element_volume[p->conforming->stiffest];
+        return p->conforming->square;
+    }
+    const bool alike = !p->cut.count && !p->borders.count && !p->fibres.of; /* nothing that takes long */
+    const bool alone = alike || !p->threads || pool_threads(p->threads) < 2;
+    squares s = {p, alone ? NULL : mem_array(pool_chunks(p->elements, CHUNK), sizeof *s.of, "the step", &ignored)};
+    if (!s.of)
+        return go_on(p, 0, p->elements, 0, volume);
+    pool_run(p->threads, p->elements, CHUNK, squares_work, &s);
+    const double highest = pass_over(&s, volume);
+    free(s.of);
     return highest;
 }
 

@@ -413,6 +413,11 @@ static int check_skin(session *s, err *e)
 static int prepare(session *s, const struct options *o, char *device, size_t size, err *e)
 {
     s->run.rest = o->rest >= 0 ? o->rest : o->seconds < 0 && !o->steps && !s->live ? rest_tolerance : -1;
+    const int threads = tool_threads(s->t, e);
+    s->threads = threads > 0 ? pool_create(threads, e) : NULL;
+    if (!s->threads)
+        return -1;
+    s->problem.threads = s->threads;
     if (change_materials(s, o, e) || read_collider(s, o, e) || make_script(s, o, e) ||
         tled_problem_make(&s->problem, &s->m, &s->script, o->control, e) || say_control(&s->m, o->control, e) ||
         sliding_make(&s->sliding, &s->problem, &s->m, o->friction, e) ||
@@ -429,10 +434,9 @@ static int prepare(session *s, const struct options *o, char *device, size_t siz
     choose_damping(s, o);
     s->run.single = o->precision;
     s->run.device = choose_device(s, o, device, size, e);
-    int threads = tool_threads(s->t, e);
-    s->threads = s->run.device && threads > 0 ? pool_create(threads, e) : NULL;
     /* Where a device computes, processors are free for frames. */
-    if (!s->threads || folds_make(&s->folds, &s->problem, &s->m, s->run.device->monitor ? threads : 1, e))
+    if (!s->run.device ||
+        folds_make(&s->folds, &s->problem, &s->m, s->run.device->monitor ? pool_threads(s->threads) : 1, e))
         return -1;
     return tled_frame_results(s, o, e);
 }
