@@ -6,6 +6,7 @@
 #include "model/materials.h"
 #include "physics/stability.h"
 #include "tled/problem/bodies.h"
+#include "tled/problem/boxes.h"
 #include "tled/problem/conforming_step.h"
 #include "tled/problem/cut.h"
 #include "tled/problem/films.h"
@@ -158,23 +159,6 @@ static int join_own(tled_problem *p, const model *m, err *e)
     p->mix = p->own_mix;
     p->mixture = p->own_mixture;
     return p->own_mixture ? 0 : -1;
-}
-
-/* Every element must be a box with the lattice's spacing for sides, its corners in VTK order. */
-static int check_boxes(const tled_problem *p, err *e)
-{
-    for (int64_t i = 0; i < p->elements * 8; i++) {
-        const double *first = p->position + 3 * (int64_t)p->element_node[i / 8 * 8];
-        const double *corner = p->position + 3 * (int64_t)p->element_node[i];
-        for (int a = 0; a < 3; a++) {
-            double gap = corner[a] - first[a] - p->side[a] * lattice_vtk[i % 8][a];
-            if (!(fabs(gap) <= 1e-6 * p->side[a]))
-                return err_set(e, NULL, 0,
-                               "element %lld is not a box of %g x %g x %g m; expected all to be the lattice's",
-                               (long long)(i / 8), p->side[0], p->side[1], p->side[2]);
-        }
-    }
-    return 0;
 }
 
 static int64_t find_curve(const script *s, script_verb verb, int32_t volume)
@@ -370,37 +354,6 @@ static int make_laws(tled_problem *p, const model *m, err *e)
     return status;
 }
 
-/* Where among a node's elements, by their places in the lattice, the one is that has the node for this corner. */
-static int corner_rank(int32_t corner)
-{
-    const int32_t *offset = lattice_vtk[corner % 8];
-    return 7 - (offset[0] + 2 * offset[1] + 4 * offset[2]);
-}
-
-/* The corners of elements at each node, and its mass: rho V / 8 from each, of what is tissue. */
-static int make_corners(tled_problem *p, err *e)
-{
-    double share = p->side[0] * p->side[1] * p->side[2] / 8;
-    const int32_t none = (int32_t)p->elements * 8;
-    for (int64_t i = 0; i < p->nodes * 8; i++)
-        p->corner[i] = none;
-    for (int64_t i = 0; i < p->elements * 8; i++) {
-        int64_t n = p->element_node[i];
-        int32_t *list = p->corner + n * 8;
-        int at = 7;
-        if (list[at] != none)
-            return err_set(e, NULL, 0, "node %lld is in more than 8 elements", (long long)n);
-        for (; at && (list[at - 1] == none || corner_rank(list[at - 1]) > corner_rank((int32_t)i)); at--)
-            list[at] = list[at - 1];
-        list[at] = (int32_t)i;
-        p->mass[n] += tled_law_of(p, i / 8).density * share * cut_inertia(p, i / 8);
-    }
-    for (int64_t n = 0; n < p->nodes; n++)
-        if (p->corner[n * 8] == none)
-            return err_set(e, NULL, 0, "node %lld is in no element", (long long)n);
-    return 0;
-}
-
 /* Rigid nodes stay where they are, but for components that the script displaces. */
 static void make_holds(tled_problem *p, const model *m)
 {
@@ -446,9 +399,9 @@ int tled_problem_make(tled_problem *p, const model *m, const script *s, hourglas
     p->mass = mem_array(p->nodes, sizeof *p->mass, "the nodes", e);
     if (!p->corner || !p->mass)
         return -1;
-    if ((boxes && check_boxes(p, e)) || check_fractions(p, e) || check_mixes(p, e) || (boxes && join_own(p, m, e)) ||
+    if ((boxes && boxes_check(p, e)) || check_fractions(p, e) || check_mixes(p, e) || (boxes && join_own(p, m, e)) ||
         cut_borrow(p, m, e) || border_borrow(p, m, e) || films_share(p, m, e) || make_laws(p, m, e) ||
-        make_fields(p, e) || (boxes ? make_corners(p, e) : conforming_corners(p, e)) || cut_weigh(p, e) ||
+        make_fields(p, e) || (boxes ? boxes_corners(p, e) : conforming_corners(p, e)) || cut_weigh(p, e) ||
         films_make(p, e) || loads_make(p, m, e) || followers_make(p, m, e) || bodies_make(p, m, e))
         return -1;
     p->hold = mem_array(p->nodes + films_count(p), 3 * sizeof *p->hold, "the nodes", e);
