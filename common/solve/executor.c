@@ -1,5 +1,8 @@
 #include "solve/executor.h"
 
+#include "base/thread.h"
+
+#include <signal.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
@@ -134,4 +137,41 @@ const executor *executor_choose(const executor *const *table, const char *device
     else
         not_in_table(table, device, e);
     return NULL;
+}
+
+static const executor *likely(const executor *const *table, const char *device, const executor_need *need)
+{
+    for (int i = 0; table[i]; i++)
+        if ((!strcmp(device, "auto") || !strcmp(device, table[i]->device)) && !lack_of(table[i], need))
+            return table[i];
+    return NULL;
+}
+
+static void *make_ready(void *argument)
+{
+    const executor_ahead *a = argument;
+    a->of->unusable();
+    return NULL;
+}
+
+void executor_ahead_start(executor_ahead *a, const executor *const *table, const char *device,
+                          const executor_need *need)
+{
+    sigset_t all, before;
+    const executor *of = likely(table, device, need);
+    if (!of || !strcmp(of->device, "cpu"))
+        return;
+    sigfillset(&all); /* signals are the main thread's */
+    pthread_sigmask(SIG_BLOCK, &all, &before);
+    a->of = of;
+    if (thread_start(&a->thread, make_ready, a))
+        a->of = NULL; /* executor_choose does it */
+    pthread_sigmask(SIG_SETMASK, &before, NULL);
+}
+
+void executor_ahead_wait(executor_ahead *a)
+{
+    if (a->of)
+        pthread_join(a->thread, NULL);
+    a->of = NULL;
 }

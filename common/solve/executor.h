@@ -7,6 +7,8 @@
 
 #include "base/err.h"
 
+#include <pthread.h>
+
 #include <stddef.h>
 #include <stdint.h>
 
@@ -73,5 +75,20 @@ typedef struct executor_need {
  * here. */
 const executor *executor_choose(const executor *const *table, const char *device, const executor_need *need, char *says,
                                 size_t size, err *e);
+
+/* An executor's device that is made ready on a thread of its own, while the model is read: a card's context takes a
+ * third of a second. The caller owns it; zeroed: none. */
+typedef struct executor_ahead {
+    const executor *of;
+    pthread_t thread;
+} executor_ahead;
+
+/* Starts with the executor that executor_choose would take, as far as what is needed is known; not with one on
+ * processors, which is ready. What was found wrong comes out of executor_choose, as ever. */
+void executor_ahead_start(executor_ahead *a, const executor *const *table, const char *device,
+                          const executor_need *need);
+
+/* Waits until it is ready: before executor_choose, and before the process ends. Again, and of none: nothing. */
+void executor_ahead_wait(executor_ahead *a);
 
 #endif

@@ -120,6 +120,7 @@ static int run_tool(int argc, char **argv)
         stop_catch();
     if (o.haptics && !(s.socket = broadcast_open(o.haptics, &e)))
         goto out;
+    session_ahead(&s);
     s.stage.lines_follow = o.live && (is_stdin(o.poses) || is_stdin(o.control));
     if (stage_open_output(&s.stage, &t, &e) || (o.replay && msds_record_probe(&s, &e)) ||
         stage_read(&s.stage, &s.m, &e) || session_prepare(&s, &e) || session_provenance(&s, &t, &e) ||

@@ -214,20 +214,36 @@ int session_slides(const session *s, method_word method, double friction, err *e
                      friction, methods_words[is]);
 }
 
-static int choose_device(session *s, err *e)
+static const char *const device_names[] = {"auto", "cuda", "cpu"};
+
+/* As far as it is known: cavities are the model's. */
+static executor_need need_of(const session *s)
 {
-    static const char *const names[] = {"auto", "cuda", "cpu"};
     const struct options *o = s->o;
     const method_word method = (method_word)o->method;
-    if (session_slides(s, method, o->friction, e))
-        return -1;
     const uint32_t later = o->warp && method == METHOD_MSDS ? EXECUTOR_WARP : 0; /* where FEM begins */
     const uint32_t more = (o->friction > 0 ? EXECUTOR_FRICTION : 0) | (s->cavities.count ? EXECUTOR_CAVITIES : 0) |
                           (o->haptics ? EXECUTOR_TANGENT : 0);
-    const executor_need need = {.features = methods_features(methods_with(method, o->exact, o->warp)) | more |
-                                            (o->device ? 0 : later)};
+    return (executor_need){.features = methods_features(methods_with(method, o->exact, o->warp)) | more |
+                                       (o->device ? 0 : later)};
+}
+
+void session_ahead(session *s)
+{
+    const executor_need need = need_of(s);
+    executor_ahead_start(&s->ahead, msds_executors, device_names[s->o->device], &need);
+}
+
+static int choose_device(session *s, err *e)
+{
+    const struct options *o = s->o;
+    if (session_slides(s, (method_word)o->method, o->friction, e))
+        return -1;
+    const executor_need need = need_of(s);
     char device[300];
-    s->device = msds_executor_of(executor_choose(msds_executors, names[o->device], &need, device, sizeof device, e));
+    executor_ahead_wait(&s->ahead);
+    s->device =
+        msds_executor_of(executor_choose(msds_executors, device_names[o->device], &need, device, sizeof device, e));
     int threads = tool_threads(s->t, e);
     s->threads = s->device && threads > 0 ? pool_create(threads, e) : NULL;
     if (s->threads)
@@ -298,6 +314,7 @@ int session_change(session *s, session_part part, err *e)
 
 void session_free(session *s)
 {
+    executor_ahead_wait(&s->ahead);
     broadcast_close(s->socket);
     compare_free(s->other, s->device);
     if (s->state)

@@ -54,6 +54,7 @@ typedef struct session {
     double stable, sure; /* s: steps of springs that are stable at rest, and in any configuration */
     bool springs_told;
     const msds_executor *device;
+    executor_ahead ahead;
     pool *threads;
     msds_state *state;
     inverted inverted;
@@ -85,6 +86,9 @@ typedef struct session {
     notes warnings;
     char *text[SESSION_TEXTS]; /* of settings that changed, which the options point to; owned */
 } session;
+
+/* Starts to make the device ready that the options ask for, while the model is read. */
+void session_ahead(session *s);
 
 /* Reads the probe and the skin, makes the problem of the model, and chooses the device, the method and the step. -1
  * with e filled, as for all below; to be freed all the same. */

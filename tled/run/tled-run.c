@@ -360,12 +360,18 @@ static int read_collider(session *s, const struct options *o, err *e)
                : 0;
 }
 
+static const char *const device_names[] = {"auto", "cuda", "cpu"};
+
+static const executor *const *executors_for(const struct options *o)
+{
+    return o->precision ? tled_executors_single : tled_executors_double;
+}
+
 static const tled_executor *choose_device(session *s, const struct options *o, char *device, size_t size, err *e)
 {
-    const executor *const *table = o->precision ? tled_executors_single : tled_executors_double;
-    static const char *const names[] = {"auto", "cuda", "cpu"};
     const executor_need need = tled_need(&s->problem);
-    return tled_executor_of(executor_choose(table, names[o->device], &need, device, size, e));
+    executor_ahead_wait(&s->ahead);
+    return tled_executor_of(executor_choose(executors_for(o), device_names[o->device], &need, device, size, e));
 }
 
 /* In the model, for whoever asks for hourglass energy later. */
@@ -508,6 +514,7 @@ static int read_input(session *s, const tool *t, struct options *o, err *e)
         return -1;
     if (s->live)
         stop_catch();
+    executor_ahead_start(&s->ahead, executors_for(o), device_names[o->device], &(executor_need){.features = 0});
     s->stage.lines_follow = o->live && ((o->lines && !strcmp(o->lines, "-")) || (o->poses && !strcmp(o->poses, "-")));
     return stage_open_output(&s->stage, t, e) || stage_read(&s->stage, &s->m, e) ? -1 : 0;
 }
@@ -545,6 +552,7 @@ out:
     if (!t.done)
         end_output(&s, &t, &e);
     end_checkpoints(&s, &e);
+    executor_ahead_wait(&s.ahead);
     live_destroy(s.live);
     pool_destroy(s.threads);
     results_destroy(s.results);

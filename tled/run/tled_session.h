@@ -28,6 +28,7 @@ typedef struct session {
     collider collider;
     sliding sliding;
     self_contact skin; /* that touches itself */
+    executor_ahead ahead;
     pool *threads;
     run_setup run;
     run_log log;
