@@ -3,7 +3,7 @@
  * in another order, and where there are slits, of which bricks that none comes to are told nothing. And in rows: the
  * same.
  */
-// needs: tled/tiles/tiles.c tled/tiles/tile_split.c
+// needs: tled/tiles/tiles.c tled/tiles/bricks.c tled/tiles/tile_split.c
 // needs: tled/tiles/lattice_sheet.c tled/tiles/places.c  tled/*/*.c
 #include "mesh/lattice.h"
 #include "physics/element_cut.h"

@@ -4,8 +4,11 @@
 #include "mesh/lattice.h"
 
 #include <math.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
+
+enum { CHUNK = 4096 }; /* nodes, or elements */
 
 static int32_t root(int32_t *part, int32_t n)
 {
@@ -19,28 +22,73 @@ static void find_parts(const tled_problem *p, int32_t *part)
 {
     for (int32_t n = 0; n < p->nodes; n++)
         part[n] = n;
-    for (int64_t i = 0; i < 8 * p->elements; i++) {
-        int32_t a = root(part, p->element_node[i / 8 * 8]), b = root(part, p->element_node[i]);
-        part[a > b ? a : b] = a > b ? b : a;
+    for (int64_t i = 0; i < p->elements; i++) {
+        const int32_t *node = p->element_node + 8 * i;
+        int32_t a = root(part, node[0]);
+        for (int k = 1; k < 8; k++) {
+            if (part[node[k]] == a)
+                continue;
+            const int32_t b = root(part, node[k]), low = a < b ? a : b;
+            part[a > b ? a : b] = low;
+            a = low;
+        }
     }
     for (int32_t n = 0; n < p->nodes; n++)
         part[n] = root(part, n);
 }
 
+typedef struct finder {
+    const tled_problem *p;
+    const int32_t *part;
+    int32_t *at;
+    atomic_llong off; /* the first element that is off the lattice */
+} finder;
+
+static void place_work(void *context, int64_t chunk, int64_t from, int64_t to)
+{
+    const finder *f = context;
+    const tled_problem *p = f->p;
+    (void)chunk;
+    for (int64_t n = from; n < to; n++)
+        for (int a = 0; a < 3; a++) {
+            double way = p->position[3 * n + a] - p->position[3 * (int64_t)f->part[n] + a];
+            f->at[3 * n + a] = (int32_t)nearbyint(way / p->side[a]);
+        }
+}
+
+static bool is_off(const finder *f, int64_t element)
+{
+    const int32_t *node = f->p->element_node + 8 * element, *first = f->at + 3 * (int64_t)node[0];
+    bool off = false;
+    for (int c = 1; c < 8; c++)
+        for (int a = 0; a < 3; a++)
+            off |= f->at[3 * (int64_t)node[c] + a] != first[a] + lattice_vtk[c][a];
+    return off;
+}
+
+static void check_work(void *context, int64_t chunk, int64_t from, int64_t to)
+{
+    finder *f = context;
+    (void)chunk;
+    for (int64_t i = from; i < to; i++)
+        if (is_off(f, i)) {
+            long long before = atomic_load(&f->off);
+            while (i < before && !atomic_compare_exchange_weak(&f->off, &before, i))
+                ;
+            return;
+        }
+}
+
 int places_find(const tled_problem *p, int32_t *part, int32_t *at, err *e)
 {
+    finder f = {.p = p, .part = part, .at = at};
+    atomic_init(&f.off, INT64_MAX);
     find_parts(p, part);
-    for (int64_t n = 0; n < p->nodes; n++)
-        for (int a = 0; a < 3; a++) {
-            double way = p->position[3 * n + a] - p->position[3 * (int64_t)part[n] + a];
-            at[3 * n + a] = (int32_t)nearbyint(way / p->side[a]);
-        }
-    for (int64_t i = 0; i < 8 * p->elements; i++)
-        for (int a = 0; a < 3; a++)
-            if (at[3 * (int64_t)p->element_node[i] + a] !=
-                at[3 * (int64_t)p->element_node[i / 8 * 8] + a] + lattice_vtk[i % 8][a])
-                return err_set(e, NULL, 0, "element %lld is off the lattice; expected a box of it, or -d cpu",
-                               (long long)(i / 8));
+    pool_run(p->threads, p->nodes, CHUNK, place_work, &f);
+    pool_run(p->threads, p->elements, CHUNK, check_work, &f);
+    const int64_t off = atomic_load(&f.off);
+    if (off < INT64_MAX)
+        return err_set(e, NULL, 0, "element %lld is off the lattice; expected a box of it, or -d cpu", (long long)off);
     return 0;
 }
 

@@ -2,10 +2,12 @@
 
 #include "base/mem.h"
 #include "tled/contact/sliding.h"
+#include "tled/tiles/bricks.h"
 #include "tled/tiles/lattice_sheet.h"
 #include "tled/tiles/places.h"
 #include "tled/tiles/tile_split.h"
 
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -13,16 +15,17 @@
 typedef struct cutter {
     tiles *t;
     const tled_problem *p;
-    int32_t *part;    /* nodes: a node of the part that it belongs to; later, its tile */
-    int32_t *at;      /* nodes x 3: its place in the lattice, from its part's first node */
-    int32_t *order;   /* nodes: where it stands in the tiles' order */
-    int64_t *seat;    /* a table of tiles by part and brick: tile, or -1 */
-    int64_t seats;    /* a power of 2 */
-    int32_t *brick;   /* tiles x 4: part and brick */
-    int64_t capacity; /* of brick */
-    tile_pack here;   /* the tile being cut */
-    tile_split split; /* where nodes share places */
-    int32_t *place;   /* there, of the listed tile being cut: elements: its cell's place, or -1 */
+    int32_t *part;      /* nodes: a node of the part that it belongs to; later, its tile */
+    int32_t *at;        /* nodes x 3: its place in the lattice, from its part's first node */
+    int32_t *order;     /* nodes: where it stands in the tiles' order */
+    int64_t *seat;      /* a table of tiles by part and brick: tile, or -1 */
+    int64_t seats;      /* a power of 2 */
+    int32_t *brick;     /* tiles x 4: part and brick */
+    int64_t capacity;   /* of brick */
+    tile_pack here;     /* the tile being cut */
+    tile_split split;   /* where nodes share places */
+    atomic_bool shared; /* a place, of nodes or of cells */
+    int32_t *place;     /* there, of the listed tile being cut: elements: its cell's place, or -1 */
     err *e;
 } cutter;
 
@@ -45,73 +48,6 @@ void tiles_free(tiles *t)
     free(t->mixfibre);
     free(t->extra);
     memset(t, 0, sizeof *t);
-}
-
-static int32_t floor_division(int32_t a, int32_t b)
-{
-    return a / b - (a % b < 0);
-}
-
-static uint64_t hash(const int32_t key[4])
-{
-    uint64_t h = 0;
-    for (int i = 0; i < 4; i++)
-        h = (h ^ (uint32_t)key[i]) * UINT64_C(0x9E3779B97F4A7C15), h ^= h >> 29;
-    return h;
-}
-
-static int grow_seats(cutter *c)
-{
-    int64_t seats = 2 * c->seats;
-    int64_t *seat = mem_array(seats, sizeof *seat, "the tiles", c->e);
-    if (!seat)
-        return -1;
-    for (int64_t i = 0; i < seats; i++)
-        seat[i] = -1;
-    for (int64_t t = 0; t < c->t->count; t++) {
-        uint64_t at = hash(c->brick + 4 * t);
-        while (seat[at & (uint64_t)(seats - 1)] >= 0)
-            at++;
-        seat[at & (uint64_t)(seats - 1)] = t;
-    }
-    free(c->seat);
-    c->seat = seat;
-    c->seats = seats;
-    return 0;
-}
-
-/* The tile of a brick; a new one is numbered as it comes. -1 with e filled. */
-static int64_t tile_of(cutter *c, const int32_t key[4])
-{
-    if (2 * c->t->count >= c->seats && grow_seats(c))
-        return -1;
-    uint64_t mask = (uint64_t)c->seats - 1, at = hash(key) & mask;
-    for (; c->seat[at] >= 0; at = (at + 1) & mask)
-        if (!memcmp(c->brick + 4 * c->seat[at], key, 4 * sizeof *key))
-            return c->seat[at];
-    if (mem_grow(&c->brick, &c->capacity, 4 * (c->t->count + 1), sizeof *c->brick, "the tiles", c->e))
-        return -1;
-    memcpy(c->brick + 4 * c->t->count, key, 4 * sizeof *key);
-    c->seat[at] = c->t->count;
-    return c->t->count++;
-}
-
-/* Gives each node its tile, in `part`. */
-static int find_tiles(cutter *c)
-{
-    c->seats = 512;
-    if (grow_seats(c))
-        return -1;
-    for (int64_t n = 0; n < c->p->nodes; n++) {
-        int32_t key[4] = {c->part[n]};
-        for (int a = 0; a < 3; a++)
-            key[1 + a] = floor_division(c->at[3 * n + a], c->t->brick[a]);
-        int64_t which = tile_of(c, key);
-        if (which < 0)
-            return -1;
-        c->part[n] = (int32_t)which;
-    }
-    return 0;
 }
 
 /* A place in the grid of a tile: of a node, or of the element whose low corner it is. */
@@ -194,6 +130,26 @@ static bool sort_nodes(cutter *c, int64_t i)
     return alone;
 }
 
+/* How work on tiles, nodes and elements is dealt. */
+enum { TILES = 16, CHUNK = 4096 };
+
+static void sort_work(void *context, int64_t chunk, int64_t from, int64_t to)
+{
+    cutter *c = context;
+    (void)chunk;
+    for (int64_t i = from; i < to; i++)
+        if (!sort_nodes(c, i))
+            atomic_store(&c->shared, true);
+}
+
+/* Those of each tile. Returns whether no two share a place. */
+static bool sort_all(cutter *c)
+{
+    atomic_store(&c->shared, false);
+    pool_run(c->p->threads, c->t->count, TILES, sort_work, c);
+    return !atomic_load(&c->shared);
+}
+
 /* Splits the tiles in which some share places: c->part becomes the new ones. */
 static int split_tiles(cutter *c)
 {
@@ -216,8 +172,8 @@ static int split_tiles(cutter *c)
     c->brick = brick;
     t->count = c->split.count;
     result = list_nodes(c);
-    for (int64_t i = 0; !result && i < t->count; i++)
-        sort_nodes(c, i);
+    if (!result)
+        sort_all(c);
 out:
     free(first);
     return result;
@@ -228,41 +184,30 @@ static bool is_listed(const cutter *c, int64_t which)
     return c->split.tile && c->split.tile[which].listed;
 }
 
+static void info_work(void *context, int64_t chunk, int64_t from, int64_t to)
+{
+    const cutter *c = context;
+    (void)chunk;
+    for (int64_t k = from; k < to; k++) {
+        const int32_t n = c->t->node[k], which = c->part[n];
+        c->t->node_info[k] = info_of(c, n, is_listed(c, which) ? 0 : place_in(c, which, n)); /* 0: put_places */
+        c->order[n] = (int32_t)k;
+    }
+}
+
 /* The nodes in order of tiles, in each by place. */
 static int order_nodes(cutter *c)
 {
     tiles *t = c->t;
-    bool alone = true;
     t->nodes = c->p->nodes;
     t->node = mem_array(t->nodes, sizeof *t->node, "the tiles", c->e);
     t->node_info = mem_array(t->nodes, sizeof *t->node_info, "the tiles", c->e);
     if (!t->node || !t->node_info || list_nodes(c))
         return -1;
-    for (int64_t i = 0; i < t->count; i++)
-        alone &= sort_nodes(c, i);
-    if (!alone && split_tiles(c))
+    if (!sort_all(c) && split_tiles(c))
         return -1;
-    for (int32_t k = 0; k < t->nodes; k++) {
-        const int32_t n = t->node[k], which = c->part[n];
-        t->node_info[k] = info_of(c, n, is_listed(c, which) ? 0 : place_in(c, which, n)); /* 0: put_places */
-        c->order[n] = k;
-    }
+    pool_run(c->p->threads, t->nodes, CHUNK, info_work, c);
     return 0;
-}
-
-/* The tiles of an element's corners, each once. Returns how many. */
-static int tiles_at(const cutter *c, int64_t element, int32_t list[8])
-{
-    int count = 0;
-    for (int i = 0; i < 8; i++) {
-        int32_t which = c->part[c->p->element_node[8 * element + i]];
-        int at = 0;
-        while (at < count && list[at] != which)
-            at++;
-        if (at == count)
-            list[count++] = which;
-    }
-    return count;
 }
 
 /* Whether fibres of a volume do anything: they contract, have curves of their own or resist being stretched. */
@@ -297,16 +242,51 @@ static int make_cell_lists(cutter *c)
                : -1;
 }
 
-/* The cells of each tile, those with fibres first. */
+/* Whether a tile has none of an element's corners before this one: so that each of its elements is found once. */
+static bool is_first(const cutter *c, int64_t which, int32_t corner)
+{
+    const int32_t *node = c->p->element_node + corner / 8 * 8;
+    for (int k = 0; k < corner % 8; k++)
+        if (c->part[node[k]] == which)
+            return false;
+    return true;
+}
+
+/* Counts the elements at a tile's nodes, and lists them where there is room: those with fibres first. */
+static void find_cells(cutter *c, int64_t i)
+{
+    tiles *t = c->t;
+    const tled_problem *p = c->p;
+    tile *to = &t->tile[i];
+    int32_t plain = to->fibred;
+    to->cells = to->fibred = 0;
+    for (int32_t k = to->node; k < to->node + to->nodes; k++) {
+        const int32_t *corner = p->corner + 8 * (int64_t)t->node[k];
+        for (int m = 0; m < 8 && corner[m] < 8 * p->elements; m++) {
+            if (!is_first(c, i, corner[m]))
+                continue;
+            const int64_t element = corner[m] / 8;
+            const bool fibred = is_fibred(c, element);
+            if (t->cell_element)
+                t->cell_element[to->cell + (fibred ? to->fibred : plain++)] = (int32_t)element;
+            to->cells++;
+            to->fibred += fibred;
+        }
+    }
+}
+
+static void cells_work(void *context, int64_t chunk, int64_t from, int64_t to)
+{
+    (void)chunk;
+    for (int64_t i = from; i < to; i++)
+        find_cells(context, i);
+}
+
+/* The cells of each tile. */
 static int list_cells(cutter *c)
 {
     tiles *t = c->t;
-    int32_t list[8];
-    for (int64_t i = 0; i < c->p->elements; i++)
-        for (int k = tiles_at(c, i, list); k--;) {
-            t->tile[list[k]].cells++;
-            t->tile[list[k]].fibred += is_fibred(c, i);
-        }
+    pool_run(c->p->threads, t->count, TILES, cells_work, c);
     for (int64_t i = 0; i < t->count; i++) {
         tile *to = &t->tile[i];
         if (t->cells > INT32_MAX - TILE_PLACES)
@@ -315,17 +295,10 @@ static int list_cells(cutter *c)
         to->direction = (int32_t)t->directions;
         t->cells += to->cells;
         t->directions += to->fibred;
-        to->cells = to->fibred = 0;
     }
     if (make_cell_lists(c))
         return -1;
-    for (int fibred = 1; fibred >= 0; fibred--)
-        for (int64_t i = 0; i < c->p->elements; i++)
-            for (int k = is_fibred(c, i) == fibred ? tiles_at(c, i, list) : 0; k--;) {
-                tile *to = &t->tile[list[k]];
-                t->cell_element[to->cell + to->cells++] = (int32_t)i;
-                to->fibred += fibred;
-            }
+    pool_run(c->p->threads, t->count, TILES, cells_work, c);
     return 0;
 }
 
@@ -466,6 +439,10 @@ static void sort_cells(cutter *c, int64_t i)
     for (int part = 0; part < 2; part++) {
         int32_t first = part ? to->fibred : 0, count = part ? to->cells - to->fibred : to->fibred;
         for (int32_t k = 0; k < count; k++)
+            key[k] = (uint32_t)list[first + k];
+        if (is_listed(c, i)) /* several may have one place */
+            places_sort(list + first, key, count);
+        for (int32_t k = 0; k < count; k++)
             key[k] = cell_key(c, i, list[first + k]);
         places_sort(list + first, key, count);
     }
@@ -476,13 +453,38 @@ static void sort_cells(cutter *c, int64_t i)
     }
 }
 
+/* Tiles side by side, each thread with a tile of its own that is being cut; listed ones use what is of elements. */
+static void cut_work(void *context, int64_t chunk, int64_t from, int64_t to)
+{
+    const cutter *c = context;
+    cutter own = {
+        .t = c->t, .p = c->p, .part = c->part, .at = c->at, .order = c->order, .brick = c->brick, .split = c->split};
+    (void)chunk;
+    for (int64_t i = from; i < to; i++)
+        if (!is_listed(&own, i))
+            cut_tile(&own, i);
+}
+
+static void cut_all(cutter *c)
+{
+    pool_run(c->p->threads, c->t->count, TILES, cut_work, c);
+    for (int64_t i = 0; c->split.tile && i < c->t->count; i++)
+        if (is_listed(c, i))
+            cut_tile(c, i);
+}
+
+static void sort_cells_work(void *context, int64_t chunk, int64_t from, int64_t to)
+{
+    (void)chunk;
+    for (int64_t i = from; i < to; i++)
+        sort_cells(context, i);
+}
+
 static int cut_tiles(cutter *c)
 {
     tiles *t = c->t;
-    for (int64_t i = 0; i < t->count; i++) {
-        sort_cells(c, i);
-        cut_tile(c, i);
-    }
+    pool_run(c->p->threads, t->count, TILES, sort_cells_work, c);
+    cut_all(c);
     for (int64_t i = 0; i < t->count; t->halos += t->tile[i++].halos) {
         if (t->halos > INT32_MAX - TILE_PLACES)
             return err_set(c->e, NULL, 0, "%lld nodes are too many for this device", (long long)c->p->nodes);
@@ -492,8 +494,7 @@ static int cut_tiles(cutter *c)
     t->halo_place = mem_array(t->halos, sizeof *t->halo_place, "the tiles", c->e);
     if (!t->halo_node || !t->halo_place || list_lists(c))
         return -1;
-    for (int64_t i = 0; i < t->count; i++)
-        cut_tile(c, i);
+    cut_all(c);
     return 0;
 }
 
@@ -545,15 +546,14 @@ int tiles_make(tiles *t, const tled_problem *p, const int brick[3], err *e)
     c.order = mem_array(p->nodes, sizeof *c.order, "the tiles", e);
     if (!c.part || !c.at || !c.order)
         goto out;
-    if (places_find(p, c.part, c.at, e) || find_tiles(&c) || order_nodes(&c) || list_cells(&c) || cut_tiles(&c) ||
-        list_extras(t, p, e))
+    if (places_find(p, c.part, c.at, e) || bricks_find(p, c.at, t->brick, c.part, &c.brick, &t->count, e) ||
+        order_nodes(&c) || list_cells(&c) || cut_tiles(&c) || list_extras(t, p, e))
         goto out;
     result = 0;
 out:
     free(c.part);
     free(c.at);
     free(c.order);
-    free(c.seat);
     free(c.brick);
     free(c.place);
     tile_split_free(&c.split);
