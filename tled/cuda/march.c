@@ -15,8 +15,6 @@
 
 enum {
     OWNED = MARCH_SIDE - 1,
-    PATCH_X = 8, /* of a warp */
-    PATCH_Y = 4,
     SPOTS = 72 /* the most of a node: one, and of each of its elements one for each of its corners */
 };
 
@@ -56,21 +54,6 @@ typedef struct spot {
     int64_t layer; /* of the cutter's */
     int32_t i, j;
 } spot;
-
-void march_free(march *m)
-{
-    free(m->order);
-    free(m->word);
-    free(m->unit);
-    free(m->near);
-    free(m->detail);
-    free(m->which);
-    free(m->cell);
-    free(m->cut);
-    free(m->along);
-    free(m->tip);
-    memset(m, 0, sizeof *m);
-}
 
 /* Takes a node into its box, of which it may be the first. */
 static void grow_box(const cutter *c, int32_t n, bool is_first)
@@ -232,33 +215,39 @@ static bool is_tip(const cutter *c, int32_t node)
     return c->sheet && c->sheet[node] == SHEET_TIP;
 }
 
-/* A multiprocessor has four schedulers, and every fourth warp is one's: neighbours are of
- * different ones, along rows and across. */
-static int warp_of(int32_t i, int32_t j)
+/* On all threads, in any order: what several of them mark, each marks alike. */
+typedef struct marking {
+    cutter *c;
+    void (*mark)(cutter *c, int64_t i); /* by node or by element i */
+} marking;
+
+static void marking_work(void *context, int64_t chunk, int64_t from, int64_t to)
 {
-    const int half = i / PATCH_X;
-    return 4 * half + (j / PATCH_Y + 2 * half) % 4;
+    const marking *m = context;
+    (void)chunk;
+    for (int64_t i = from; i < to; i++)
+        m->mark(m->c, i);
 }
 
-/* The word of a place in its layer. */
-static int word_of(int32_t i, int32_t j)
+static void mark_all(cutter *c, int64_t count, void (*mark)(cutter *c, int64_t i))
 {
-    if (i == MARCH_SIDE)
-        return MARCH_THREADS + j;
-    if (j == MARCH_SIDE)
-        return MARCH_THREADS + MARCH_SIDE + 1 + i;
-    return 32 * warp_of(i, j) + PATCH_X * (j % PATCH_Y) + i % PATCH_X;
+    marking m = {c, mark};
+    pool_run(c->p->threads, count, 4096, marking_work, &m);
+}
+
+static void mark_warp(cutter *c, int64_t element)
+{
+    spot at[SPOTS];
+    for (int k = cell_spots(c, element, at); k--;)
+        __atomic_fetch_or(&c->warps[at[k].layer], (uint8_t)(1u << march_warp_of(at[k].i, at[k].j)), __ATOMIC_RELAXED);
 }
 
 /* Notes which warps have cells in each layer. Returns how many in all. */
 static int64_t mark_warps(cutter *c)
 {
-    spot at[SPOTS];
     int64_t sum = 0;
     memset(c->warps, 0, (size_t)c->cells);
-    for (int64_t i = 0; i < c->p->elements; i++)
-        for (int k = cell_spots(c, i, at); k--;)
-            c->warps[at[k].layer] |= (uint8_t)(1u << warp_of(at[k].i, at[k].j));
+    mark_all(c, c->p->elements, mark_warp);
     for (int64_t i = 0; i < c->cells; i++)
         sum += march_warps(c->warps[i]);
     return sum;
@@ -297,38 +286,42 @@ static int choose_axes(cutter *c)
     return 0;
 }
 
+static void mark_if_special(cutter *c, int64_t element)
+{
+    spot at[SPOTS];
+    const march_cell cell = march_cell_of(c->m, c->p, element);
+    for (int k = march_cell_special(c->m, c->p, element, &cell) ? cell_spots(c, element, at) : 0; k--;)
+        __atomic_store_n(&c->special[at[k].layer], true, __ATOMIC_RELAXED);
+}
+
 static int mark_special(cutter *c)
 {
     const tled_problem *p = c->p;
-    spot at[SPOTS];
-    for (int32_t i = 1; i < p->volumes; i++)
-        if (p->volume[i].elements > p->volume[c->m->plain].elements)
-            c->m->plain = i;
+    c->m->plain = march_plain_of(p);
     c->special = mem_array(c->cells, sizeof *c->special, "the march", c->e);
     if (!c->special)
         return -1;
-    for (int64_t i = 0; i < p->elements; i++) {
-        const march_cell cell = march_cell_of(c->m, p, i);
-        for (int k = march_cell_special(c->m, p, i, &cell) ? cell_spots(c, i, at) : 0; k--;)
-            c->special[at[k].layer] = true;
-    }
+    mark_all(c, p->elements, mark_if_special);
     return 0;
+}
+
+static void mark_owned(cutter *c, int64_t node)
+{
+    spot at[SPOTS];
+    const int many = node_spots(c, (int32_t)node, at);
+    for (int k = 0; k < (c->sheet && !c->inner[node] ? many : 1); k++)
+        __atomic_store_n(&c->slot[at[k].layer], 0, __ATOMIC_RELAXED);
 }
 
 /* Numbers the layers that have owned nodes, and the empty ones before and after each
  * run of them; a list of the runs. */
 static int number_layers(cutter *c, march_runs *runs)
 {
-    spot at[SPOTS];
     c->slot = mem_array(c->cells, sizeof *c->slot, "the march", c->e);
     if (!c->slot)
         return -1;
     memset(c->slot, 0xff, (size_t)c->cells * sizeof *c->slot);
-    for (int32_t n = 0; n < c->p->nodes; n++) {
-        const int many = node_spots(c, n, at);
-        for (int k = 0; k < (c->sheet && !c->inner[n] ? many : 1); k++)
-            c->slot[at[k].layer] = 0;
-    }
+    mark_all(c, c->p->nodes, mark_owned);
     for (int64_t i = 0, part = 0; i < c->cells;) { /* a run ends with its column */
         while (part + 1 < c->parts && c->boxes[part + 1].first <= i)
             part++;
@@ -353,25 +346,34 @@ static int number_layers(cutter *c, march_runs *runs)
 /* Puts bits into a word that has none of them yet. */
 static void put_word(cutter *c, const spot *at, uint32_t bits)
 {
-    uint32_t *word = &c->m->word[MARCH_WORDS * (int64_t)c->slot[at->layer] + word_of(at->i, at->j)];
-    c->shared |= (*word & bits & (MARCH_THERE | MARCH_CELL)) != 0;
-    *word |= bits;
+    uint32_t *word = &c->m->word[MARCH_WORDS * (int64_t)c->slot[at->layer] + march_word_of(at->i, at->j)];
+    if (__atomic_fetch_or(word, bits, __ATOMIC_RELAXED) & bits & (MARCH_THERE | MARCH_CELL))
+        __atomic_store_n(&c->shared, true, __ATOMIC_RELAXED);
+}
+
+static void put_node(cutter *c, int64_t n)
+{
+    spot at[SPOTS];
+    for (int k = node_spots(c, (int32_t)n, at); k--;)
+        if (c->slot[at[k].layer] >= 0)
+            put_word(c, &at[k], (uint32_t)n | MARCH_THERE | (k || is_tip(c, (int32_t)n) ? 0 : MARCH_OWN));
+}
+
+static void put_cell(cutter *c, int64_t element)
+{
+    spot at[SPOTS];
+    for (int k = cell_spots(c, element, at); k--;)
+        put_word(c, &at[k], MARCH_CELL);
 }
 
 static int put_words(cutter *c)
 {
     march *m = c->m;
-    spot at[SPOTS];
     m->word = mem_array(m->layers + MARCH_AHEAD, MARCH_WORDS * sizeof *m->word, "the march", c->e);
     if (!m->word)
         return -1;
-    for (int32_t n = 0; n < c->p->nodes; n++)
-        for (int k = node_spots(c, n, at); k--;)
-            if (c->slot[at[k].layer] >= 0)
-                put_word(c, &at[k], (uint32_t)n | MARCH_THERE | (k || is_tip(c, n) ? 0 : MARCH_OWN));
-    for (int64_t i = 0; i < c->p->elements; i++)
-        for (int k = cell_spots(c, i, at); k--;)
-            put_word(c, &at[k], MARCH_CELL);
+    mark_all(c, c->p->nodes, put_node);
+    mark_all(c, c->p->elements, put_cell);
     return 0;
 }
 
@@ -386,8 +388,8 @@ static int order_nodes(cutter *c)
     for (const uint32_t *layer = m->word; layer < m->word + MARCH_WORDS * m->layers; layer += MARCH_WORDS)
         for (int32_t j = 1; j <= OWNED; j++)
             for (int32_t i = 1; i <= OWNED; i++)
-                if (layer[word_of(i, j)] & MARCH_OWN)
-                    m->order[layer[word_of(i, j)] & MARCH_NODE] = count++;
+                if (layer[march_word_of(i, j)] & MARCH_OWN)
+                    m->order[layer[march_word_of(i, j)] & MARCH_NODE] = count++;
     m->tip_first = count;
     m->tips = c->p->nodes - count;
     for (int32_t n = 0; n < c->p->nodes; n++)
@@ -427,7 +429,7 @@ static void list_special(cutter *c)
             c->which[i] = (int32_t)number + 1;
         for (int k = cell_spots(c, i, at); k--;) {
             const int64_t layer = c->slot[at[k].layer];
-            const int word = word_of(at[k].i, at[k].j);
+            const int word = march_word_of(at[k].i, at[k].j);
             if (m->detail[layer] < 0)
                 m->detail[layer] = (int32_t)m->details++;
             if (!m->cell)
@@ -467,15 +469,9 @@ static int put_along(cutter *c)
     m->along = march_along_make(m, c->e);
     for (int64_t i = 0; m->along && i < c->p->elements; i++)
         for (int k = cell_spots(c, i, at); k--;)
-            march_along_put(m, c->p, i, MARCH_THREADS * (int64_t)c->slot[at[k].layer] + word_of(at[k].i, at[k].j));
+            march_along_put(m, c->p, i,
+                            MARCH_THREADS * (int64_t)c->slot[at[k].layer] + march_word_of(at[k].i, at[k].j));
     return m->along ? 0 : -1;
-}
-
-static void mark_units(march *m)
-{
-    for (int64_t i = 0; i < m->units; i++)
-        for (int32_t k = 0; k < m->unit[i].cells; k++)
-            m->unit[i].special |= m->detail[m->unit[i].base + k] >= 0;
 }
 
 /* Notes which nodes have all that their elements touch in their own sheet. */
@@ -559,7 +555,7 @@ static int finish(cutter *c, const march_runs *runs, int64_t slots)
         (c->sheet && march_turns_order(m, c->sheet, c->p->nodes, c->e)) || march_near_find(m, c->p->nodes, c->e))
         return -1;
     m->computed += 8. * (double)m->tips / (double)c->p->elements;
-    mark_units(m);
+    march_units_mark(m);
     return 0;
 }
 

@@ -28,9 +28,11 @@
 #include "tled/problem/state.h"
 
 enum {
-    MARCH_SIDE = 16,            /* cells along a column's side: one more than owned nodes */
-    MARCH_THREADS = 256,        /* cells of a layer */
-    MARCH_WORDS = 296,          /* of a layer: 256 and 33, and 7 of no use */
+    MARCH_SIDE = 16,     /* cells along a column's side: one more than owned nodes */
+    MARCH_THREADS = 256, /* cells of a layer */
+    MARCH_WORDS = 296,   /* of a layer: 256 and 33, and 7 of no use */
+    MARCH_PATCH_X = 8,   /* of a warp */
+    MARCH_PATCH_Y = 4,
     MARCH_TIPS = 32,            /* the most of a unit */
     MARCH_AHEAD = 7,            /* layers that displacements are ahead, and words: so many of nothing follow the last */
     MARCH_NODE = (1 << 28) - 1, /* of a word: where its node stands */
@@ -100,6 +102,24 @@ typedef struct march {
     int32_t tip_first; /* where the first of them stands */
     march_tip *tip;    /* tips x 8; NULL: there are none */
 } march;
+
+/* The warp of a place in its layer. A multiprocessor has four schedulers, and every fourth warp is one's: neighbours
+ * are of different ones, along rows and across. */
+static inline int march_warp_of(int32_t i, int32_t j)
+{
+    const int half = i / MARCH_PATCH_X;
+    return 4 * half + (j / MARCH_PATCH_Y + 2 * half) % 4;
+}
+
+/* The word of a place in its layer. */
+static inline int march_word_of(int32_t i, int32_t j)
+{
+    if (i == MARCH_SIDE)
+        return MARCH_THREADS + j;
+    if (j == MARCH_SIDE)
+        return MARCH_THREADS + MARCH_SIDE + 1 + i;
+    return 32 * march_warp_of(i, j) + MARCH_PATCH_X * (j % MARCH_PATCH_Y) + i % MARCH_PATCH_X;
+}
 
 /* slots: blocks that the card runs at once. A problem whose cells fill too few threads has no units, and no order. -1
  * with e filled, and m to be freed all the same. */

@@ -193,3 +193,12 @@ void march_along_put(const march *m, const tled_problem *p, int64_t element, int
     const float both[2] = {(float)place[0], (float)place[1]};
     memcpy(m->along + 2 * row, both, sizeof both);
 }
+
+int32_t march_plain_of(const tled_problem *p)
+{
+    int32_t plain = 0;
+    for (int32_t i = 1; i < p->volumes; i++)
+        if (p->volume[i].elements > p->volume[plain].elements)
+            plain = i;
+    return plain;
+}

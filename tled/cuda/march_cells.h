@@ -34,4 +34,7 @@ void march_beside(const double a[3], double first[3], double second[3]);
 /* An element's, to such a row. */
 void march_along_put(const march *m, const tled_problem *p, int64_t element, int64_t row);
 
+/* The volume whose cells are plain: that of the most elements. */
+int32_t march_plain_of(const tled_problem *p);
+
 #endif

@@ -88,3 +88,25 @@ int march_runs_cut(const march_runs *r, int64_t slots, march_unit **unit, int64_
     *units = p.count;
     return 0;
 }
+
+void march_units_mark(march *m)
+{
+    for (int64_t i = 0; i < m->units; i++)
+        for (int32_t k = 0; k < m->unit[i].cells; k++)
+            m->unit[i].special |= m->detail[m->unit[i].base + k] >= 0;
+}
+
+void march_free(march *m)
+{
+    free(m->order);
+    free(m->word);
+    free(m->unit);
+    free(m->near);
+    free(m->detail);
+    free(m->which);
+    free(m->cell);
+    free(m->cut);
+    free(m->along);
+    free(m->tip);
+    memset(m, 0, sizeof *m);
+}

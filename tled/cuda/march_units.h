@@ -29,6 +29,9 @@ int march_warps(uint8_t mask);
 int march_runs_add(march_runs *r, int32_t base, const uint8_t *warps, const bool *special, int64_t owned, bool further,
                    err *e);
 int march_runs_cut(const march_runs *r, int64_t slots, march_unit **unit, int64_t *units, err *e);
+
+/* Notes which units have special cells, once these are listed. */
+void march_units_mark(march *m);
 void march_runs_free(march_runs *r);
 
 #endif
