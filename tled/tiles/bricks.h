@@ -1,5 +1,5 @@
-/* The bricks of the lattice that a problem's nodes are in: those of another part are in another brick, though it lies in
- * the same place. Fills arrays that the caller owns.
+/* The bricks of the lattice that a problem's nodes are in: those of another part are in another brick, though it
+ * lies in the same place. Fills arrays that the caller owns.
  */
 #ifndef SINEW_BRICKS_H
 #define SINEW_BRICKS_H
