@@ -1,7 +1,7 @@
 /* From a model to the solver's arrays: masses, corners, what is held, shares of forces, distances;
  * and models that are no lattice of boxes.
  */
-// needs: tled/problem/state.c tled/problem/boxes.c tled/problem/deformed.c tled/problem/conforming.c
+// needs: tled/problem/state.c tled/problem/deformed.c tled/problem/conforming.c
 // needs: tled/problem/conforming_step.c tled/problem/script.c
 // needs: tled/problem/script_surface.c tled/problem/loads.c tled/problem/followers.c tled/problem/muscle_fibre.c
 // needs: tled/problem/cut.c tled/problem/script_read.c tled/problem/script_nodes.c tled/problem/step.c

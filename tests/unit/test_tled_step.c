@@ -1,7 +1,7 @@
 /* The stable step: against its formulas at rest, the element's matrix against the derivative of its
  * stress, its largest eigenvalue against bounds of it, and the model's bound against the largest frequency
  * of a block, found by power iteration. */
-// needs: tled/problem/state.c tled/problem/boxes.c tled/problem/deformed.c tled/problem/conforming.c
+// needs: tled/problem/state.c tled/problem/deformed.c tled/problem/conforming.c
 // needs: tled/problem/conforming_step.c tled/problem/step.c tled/problem/cut.c tled/problem/films.c
 // needs: tled/problem/script.c tled/problem/script_read.c tled/problem/script_nodes.c tled/problem/script_surface.c
 // needs: tled/problem/loads.c tled/problem/followers.c tled/problem/muscle_fibre.c

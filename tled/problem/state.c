@@ -6,7 +6,7 @@
 #include "model/materials.h"
 #include "physics/stability.h"
 #include "tled/problem/bodies.h"
-#include "tled/problem/boxes.h"
+#include "tled/problem/conforming.h"
 #include "tled/problem/conforming_step.h"
 #include "tled/problem/cut.h"
 #include "tled/problem/films.h"
