@@ -124,8 +124,8 @@ enum { TLED_DISPLACEMENT, TLED_VELOCITY, TLED_CONTRACTILE, TLED_MIXCONTRACTILE, 
  * displacements. */
 enum { PASS_FINISH = 1, PASS_BEGIN = 2, PASS_INTERNAL = 4 };
 
-/* Makes p (zeroed but for its threads) of the model, at rest at time 0: all its elements must be its lattice's boxes, or
- * it has no lattice. control: of hourglass modes. -1 with e filled and p to be freed all the same. */
+/* Makes p (zeroed but for its threads) of the model, at rest at time 0: all its elements must be its lattice's boxes,
+ * or it has no lattice. control: of hourglass modes. -1 with e filled and p to be freed all the same. */
 int tled_problem_make(tled_problem *p, const model *m, const script *s, hourglass_control control, err *e);
 void tled_problem_free(tled_problem *p);
 
