@@ -287,6 +287,14 @@ static void say_cut(void *context, const monitor_reading *reading, int64_t parts
     s->cut = parts;
 }
 
+static void say_refined(void *context, double time, double closest)
+{
+    session *s = context;
+    progress_clear(&s->progress);
+    tool_say(s->t, "at %.6g s single precision comes no closer to rest than %.3g of its displacement: on in double",
+             time, closest);
+}
+
 static int save(void *context, const run_point *at, double time, const field_values *state, err *e)
 {
     const session *s = context;
@@ -368,6 +376,18 @@ static const tled_executor *choose_device(session *s, const struct options *o, c
     return tled_executor_of(executor_choose(table, names[o->device], &need, device, size, e));
 }
 
+/* What a run to rest in single precision goes on by where rounding stops it: the same device in double, if it can. */
+static const tled_executor *choose_finer(const session *s)
+{
+    char says[300];
+    err none = {0};
+    const executor_need need = tled_need(&s->problem);
+    if (!s->run.device || !s->run.single || s->run.rest < 0)
+        return NULL;
+    return tled_executor_of(
+        executor_choose(tled_executors_double, s->run.device->is.device, &need, says, sizeof says, &none));
+}
+
 /* In the model, for whoever asks for hourglass energy later. */
 static int say_control(model *m, hourglass_control control, err *e)
 {
@@ -429,6 +449,7 @@ static int prepare(session *s, const struct options *o, char *device, size_t siz
     choose_damping(s, o);
     s->run.single = o->precision;
     s->run.device = choose_device(s, o, device, size, e);
+    s->run.finer = choose_finer(s);
     int threads = tool_threads(s->t, e);
     s->threads = s->run.device && threads > 0 ? pool_create(threads, e) : NULL;
     /* Where a device computes, processors are free for frames. */
@@ -448,6 +469,7 @@ static void set_run(session *s, const struct options *o)
     s->run.frame = tled_frame_write;
     s->run.checked = checked;
     s->run.cut = say_cut;
+    s->run.refined = say_refined;
     s->cut = 1;
     s->log.every = fmax(o->log_every, 0);
 }
