@@ -49,6 +49,28 @@ void words_start(const session *s, const char *device, const struct options *o)
                  isfinite(r->end) ? ", the last one shorter" : "");
 }
 
+void words_refined(void *context, double time, double closest)
+{
+    session *s = context;
+    progress_clear(&s->progress);
+    tool_say(s->t, "at %.6g s single precision comes no closer to rest than %.3g of its displacement: on in double",
+             time, closest);
+}
+
+void words_coarse(const session *s, const coarse_told *told)
+{
+    if (s->coarse)
+        tool_detail(s->t, "the run begins from the rest of %d coarser model%s: %lld elements in all, %lld steps",
+                    told->models, told->models == 1 ? "" : "s", (long long)told->elements, (long long)told->steps);
+    else
+        tool_detail(s->t, "the run begins from no coarser model: %s", told->why);
+}
+
+void words_anew(const session *s, const err *e)
+{
+    tool_say(s->t, "begun from the rest of a coarser model, the run failed: %s; again, from the beginning", e->text);
+}
+
 /* Where multiples of an option's interval lie between two steps, other than the last's end, which is met. */
 void words_between(const session *s, const char *option, const char *what, double every)
 {
