@@ -100,13 +100,24 @@ static int refine(run *n)
     return 0;
 }
 
+/* A little less than critical damping: the last of a motion at that frequency is gone sooner. What far higher damping
+ * was for is over by the next check, while Rayleigh's quotient, of the way since the last one, still has it: from there
+ * it falls to a tenth at once, if it asks for less at all, but not below what the guess asks for. */
+static double adapted(const run *n)
+{
+    const relax *x = &n->course.relax;
+    const double wanted = RELAX_DAMPING * x->frequency, was = n->course.damping;
+    const double least = fmax(was / 10, RELAX_DAMPING * x->guess);
+    return x->states > 1 && was > least ? fmin(wanted, least) : wanted;
+}
+
 /* Estimates from the reading how the tissue moves, which sets the damping, and whether it is at rest. */
 static int judge_rest(run *n)
 {
     const run_setup *r = n->r;
     relax_update(&n->course.relax, &n->monitor->reading);
     if (r->adapt)
-        n->course.damping = 2 * n->course.relax.frequency;
+        n->course.damping = adapted(n);
     n->course.remaining = relax_share(&n->course.relax, &n->monitor->reading);
     n->rested = n->course.remaining <= r->rest;
     if (n->rested)

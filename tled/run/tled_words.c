@@ -35,7 +35,7 @@ void words_start(const session *s, const char *device, const struct options *o)
                  (long long)least, least == 1 ? "" : "s", CUT_LEAST, CUT_LEAST);
     tool_say(s->t, "stable step %.6g ms, dt %.6g ms, damping %.4g 1/s%s", 1e3 * s->stable,
              1e3 / r->rate / (double)live_parts(s->live), r->damping, r->adapt ? ", then adapted" : "");
-    if (!r->point && p->start > 0 && p->start >= o->ramp && (o->contract.count || o->gravity.count))
+    if (!r->point && !s->coarse && p->start > 0 && p->start >= o->ramp && (o->contract.count || o->gravity.count))
         tool_say(s->t, "the run begins after the ramp of %g s: -c and -g act in full from the first step", o->ramp);
     if (s->live)
         tool_say(s->t, "from %.6g s, %.6g frames a second", p->start, o->rate > 0 ? o->rate : 60);
