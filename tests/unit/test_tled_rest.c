@@ -55,6 +55,29 @@ static void test_stuck(const block *what)
     bench_free(&b);
 }
 
+/* Where it can go on in double it ends as close to rest as double does, and where that ends. */
+static void test_refined(const block *what)
+{
+    double z[2] = {0, 0};
+    int64_t steps[2] = {0, 0};
+    for (int i = 0; i < 2; i++) {
+        bench b;
+        bench_make(&b, what, down, 0, PHYSICAL, 2);
+        b.setup.device = i ? &tled_cpu_single : &tled_cpu_double;
+        b.setup.single = i;
+        b.setup.finer = i ? &tled_cpu_double : NULL;
+        b.setup.rest = 1e-7;
+        bool done = !bench_go(&b);
+        ok(done && b.end.rested && b.end.remaining <= 1e-7, "%s, to 1e-7: after %lld steps %s",
+           i ? "begun in single precision" : "double", (long long)b.end.steps, b.e.text);
+        z[i] = b.displacement[3 * block_node(what, 4, 4, 0) + 2];
+        steps[i] = b.end.steps;
+        bench_free(&b);
+    }
+    near_(z[1], z[0], 2e-7 * fabs(z[0]), "both end where they are to: %.2g apart", z[1] / z[0] - 1);
+    ok(steps[1] < 3 * steps[0], "%lld steps, %lld in double alone", (long long)steps[1], (long long)steps[0]);
+}
+
 int main(void)
 {
     const tled_executor *twice = &tled_cpu_double, *once = &tled_cpu_single;
@@ -74,6 +97,7 @@ int main(void)
     z = sag(&coarse, ISOTROPIC(.0075), twice, 16, 2, 2);
     near_(z, -4.3478e-2, .01 * 4.3478e-2, "the cantilever's tip, 16 x 4 x 4: %.5g m, C3D8R to 1 %%", z);
     test_stuck(&cube);
+    test_refined(&cube);
     if (getenv("SINEW_SANITIZED")) {
         skip(6, "32 x 8 x 8 takes long with sanitizers");
         return done_testing();

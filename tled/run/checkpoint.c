@@ -36,8 +36,9 @@ struct checkpoint {
 
 /* ---- numbers of a point, in arrays of one row each */
 
-/* The last number is not in those that were written without it. */
-enum { NUMBERS = 19, NUMBERS_BEFORE = 18, COUNTS = 10 };
+/* The last numbers are not in those that were written without them. */
+enum { NUMBERS = 21, COUNTS = 10 };
+static const int numbers_before[] = {19, 18};
 
 static const char frames_key[] = "checkpoint.frames"; /* by which FILE.frames is known for ours */
 
@@ -63,7 +64,9 @@ static const size_t number_at[NUMBERS] = {AT(origin),
                                           AT(log.past.muscles),
                                           AT(log.past.probe),
                                           AT(log.past.damping),
-                                          AT(course.most_strain)};
+                                          AT(course.most_strain),
+                                          AT(course.finer),
+                                          AT(rate)};
 #undef AT
 
 static void put_point(const checkpoint *c, const run_point *p, double *number, int64_t *count)
@@ -352,7 +355,8 @@ static int read_state(checkpoint *c, const char *path, bool *foreign, err *e)
     if (fingerprint_compare(&c->of_run, &m, path, e))
         goto out;
     const model_array *number = find_row(&m, number_name, MODEL_F64, NUMBERS);
-    number = number ? number : find_row(&m, number_name, MODEL_F64, NUMBERS_BEFORE);
+    for (int i = 0; !number && i < 2; i++)
+        number = find_row(&m, number_name, MODEL_F64, numbers_before[i]);
     const model_array *count = find_row(&m, count_name, MODEL_I64, COUNTS);
     if (!number || !count || !fields_fit(&c->fields, FIELD_IN_CHECKPOINTS, &c->state)) {
         err_set(e, path, 0, "is not a checkpoint; expected one that tled-run wrote");

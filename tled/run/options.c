@@ -35,6 +35,8 @@ static const opt option_list[] = {
      "change one value, e.g. tissue.E=5000"},
     {OPT_NUMERICS, 0, "damping", "A", OPT_NUMBER, TO(damping), 0, 1e12, NULL, OPT_OUTPUT,
      "mass damping [1/s; default critical or adapted]"},
+    {OPT_NUMERICS, 0, "coarse", "auto|no", OPT_CHOICE, TO(coarse), 0, 0, "auto|no", OPT_OUTPUT,
+     "begin a run to rest from a coarser model's [default auto]"},
     {OPT_NUMERICS, 0, "hourglass", "KIND", OPT_TEXT, TO(hourglass), 0, 0, "physical|isotropic|isotropic:", OPT_OUTPUT,
      "hourglass control: physical, isotropic, or isotropic:KAPPA [default physical]"},
     {OPT_RESULT, 0, "every", "S", OPT_NUMBER, TO(every), 1e-12, 1e9, NULL, OPT_OUTPUT,

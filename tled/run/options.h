@@ -7,7 +7,7 @@
 
 struct options {
     opt_common common;
-    int device, precision;
+    int device, precision, coarse;
     double dt, seconds, rest, ramp, damping, every, log_every; /* below 0: not given */
     int64_t steps;                                             /* 0: not given */
     opt_numbers gravity, rise_fall;

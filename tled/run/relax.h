@@ -7,6 +7,10 @@
 
 #include "tled/run/monitor.h"
 
+/* The damping of a run that adapts it, in parts of the frequency; 2 is critical. From a distance of 1 to one of 1e-4 a
+ * critically damped motion takes 11.8 of its radians, one with this damping at most 11.4. */
+#define RELAX_DAMPING 1.75
+
 typedef struct relax {
     double guess;     /* rad/s: the lowest frequency, before anything moves */
     double low, high; /* rad/s: bounds of `frequency` */

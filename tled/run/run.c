@@ -11,7 +11,7 @@
 
 enum {
     CHECKPOINTS = 60, /* seconds between them, by the clock */
-    STUCK = 5000      /* steps, at least, without coming closer to rest */
+    STUCK = 5000      /* steps, at least, without coming closer to rest, before a run fails */
 };
 
 /* ---- What is decided at a check */
@@ -24,10 +24,21 @@ static int choose_step(run *n)
     if (n->r->rate_fixed || n->live)
         return 0;
     for (n->course.cuts = 0; n->course.cuts <= CUTS_MAX; n->course.cuts++)
-        if (RUN_MARGIN * n->monitor->reading.stable >= run_part(n))
+        if (run_margin(n) * n->monitor->reading.stable >= run_part(n))
             return 0;
     n->course.cuts = CUTS_MAX;
     return run_diverged(n);
+}
+
+/* Once nothing acts anew: steps as long as they may be, uncut, if that is a gain. Times go on from now. */
+static void hasten(run *n)
+{
+    const double now = run_now(n), longest = RUN_HASTE * n->monitor->reading.stable;
+    if (n->r->rate_fixed || n->live || longest < 1.05 * run_part(n))
+        return;
+    n->plan.rate = 1 / longest;
+    n->plan.origin = now - (double)n->plan.first / n->plan.rate;
+    n->course.cuts = 0;
 }
 
 static void note_closest(run *n)
@@ -38,12 +49,66 @@ static void note_closest(run *n)
     }
 }
 
-/* Whether single precision comes no closer to rest: for so many steps, and so many periods, it has not. */
+/* Whether single precision comes no closer to rest: for so many steps, and so many periods, it has not. Soon, where it
+ * can go on in double: what is asked too early costs time alone. */
 static bool is_stuck(const run *n)
 {
-    const double period = 2 * acos(-1) / n->course.relax.lowest;
+    const double period = 2 * acos(-1) / n->course.relax.lowest * n->plan.rate;
     const double since = (double)(n->plan.first - n->course.closest_at);
-    return n->r->single && since > fmax(STUCK, 20 * period * n->r->rate);
+    if (!n->r->single || n->course.finer > 0)
+        return false;
+    return since > (n->r->finer ? period : fmax(STUCK, 20 * period));
+}
+
+/* What is in the state, and the state of the other executor made of it. Where memory is short for both, one is at a
+ * time. */
+static int take_over(run *n, field_values *values)
+{
+    const run_setup *r = n->r;
+    if (fields_allocate(&r->p->fields, FIELDS_ALL, values, "the state to go on from", n->e))
+        return -1;
+    for (int i = 0; i < r->p->fields.count; i++)
+        if (n->device->get(n->state, i, values->of[i], n->e))
+            return -1;
+    n->device->destroy(n->state);
+    n->finer = *r->p;
+    n->finer.at_start = *values;
+    n->finer.start = run_now(n);
+    n->device = r->finer;
+    n->state = n->device->create(&n->finer, r->threads, n->e);
+    return n->state ? 0 : -1;
+}
+
+/* Goes on in double, at a check: all frames before are written by then. */
+static int refine(run *n)
+{
+    const run_setup *r = n->r;
+    field_values values = {{0}};
+    frame_writer *writer = n->writer;
+    n->writer = NULL;
+    n->sent = 0;
+    const bool failed = frame_writer_close(writer, n->e) || take_over(n, &values);
+    n->finer.at_start = r->p->at_start;
+    fields_free(&values);
+    n->writer = failed ? NULL : frame_writer_create(r->p, n->device, n->state, r->frame, r->context, n->e);
+    if (!n->writer)
+        return -1;
+    if (r->refined)
+        r->refined(r->context, run_now(n), n->course.closest);
+    n->course.finer = 1;
+    n->course.closest = INFINITY;
+    return 0;
+}
+
+/* A little less than critical damping: the last of a motion at that frequency is gone sooner. What far higher damping
+ * was for is over by the next check, while Rayleigh's quotient, of the way since the last one, still has it: from there
+ * it falls to a tenth at once, if it asks for less at all, but not below what the guess asks for. */
+static double adapted(const run *n)
+{
+    const relax *x = &n->course.relax;
+    const double wanted = RELAX_DAMPING * x->frequency, was = n->course.damping;
+    const double least = fmax(was / 10, RELAX_DAMPING * x->guess);
+    return x->states > 1 && was > least ? fmin(wanted, least) : wanted;
 }
 
 /* Estimates from the reading how the tissue moves, which sets the damping, and whether it is at rest. */
@@ -52,7 +117,7 @@ static int judge_rest(run *n)
     const run_setup *r = n->r;
     relax_update(&n->course.relax, &n->monitor->reading);
     if (r->adapt)
-        n->course.damping = 2 * n->course.relax.frequency;
+        n->course.damping = adapted(n);
     n->course.remaining = relax_share(&n->course.relax, &n->monitor->reading);
     n->rested = n->course.remaining <= r->rest;
     if (n->rested)
@@ -60,6 +125,8 @@ static int judge_rest(run *n)
     note_closest(n);
     if (!is_stuck(n))
         return 0;
+    if (r->finer)
+        return refine(n);
     return err_set(n->e, NULL, 0,
                    "not at rest: single precision leaves %.3g of the displacement to go; expected at most %.3g, a "
                    "larger --rest, or --precision double",
@@ -75,6 +142,8 @@ static int decide(run *n)
     n->course.most_strain = fmax(n->course.most_strain, s->strain);
     if (choose_step(n))
         return -1;
+    if (settles)
+        hasten(n);
     run_tell_cut(n, s);
     const int result = settles ? judge_rest(n) : 0;
     r->checked(r->context, n->plan.first - n->course.from, s, n->course.remaining, INT64_C(1) << n->course.cuts,
@@ -87,6 +156,7 @@ static int decide(run *n)
 static run_point point_of(const run *n)
 {
     return (run_point){.origin = n->plan.origin,
+                       .rate = n->plan.rate,
                        .first = n->plan.first,
                        .moved_most = n->monitor->reading.moved_most,
                        .course = n->course,
@@ -96,6 +166,8 @@ static run_point point_of(const run *n)
 static void resume_from(run *n, const run_point *at)
 {
     n->plan.origin = at->origin;
+    if (at->rate > 0)
+        n->plan.rate = at->rate;
     n->plan.first = at->first;
     n->monitor->reading.moved_most = at->moved_most;
     n->course = at->course;
@@ -124,7 +196,7 @@ static int write_checkpoint(run *n)
     if (r->log && log_store(r->log, n->e))
         return -1;
     for (int i = 0; i < r->p->fields.count; i++)
-        if (n->checkpoint.of[i] && r->device->get(n->state, i, n->checkpoint.of[i], n->e))
+        if (n->checkpoint.of[i] && n->device->get(n->state, i, n->checkpoint.of[i], n->e))
             return -1;
     return r->save(r->context, &at, run_now(n), &n->checkpoint, n->e);
 }
@@ -135,7 +207,7 @@ static int begin_log(run *n)
 {
     const run_setup *r = n->r;
     if (r->log && r->point && r->point->log.length)
-        return log_resume(r->log, r->device, n->state, run_now(n), &r->point->log, n->e);
+        return log_resume(r->log, n->device, n->state, run_now(n), &r->point->log, n->e);
     return run_log_sound(n);
 }
 
@@ -239,10 +311,11 @@ static int make_state(run *n)
     const run_setup *r = n->r;
     if (r->save && fields_allocate(&r->p->fields, FIELD_IN_CHECKPOINTS, &n->checkpoint, "the state to save", n->e))
         return -1;
-    n->state = r->device->create(r->p, r->threads, n->e);
+    n->device = n->course.finer > 0 && r->finer ? r->finer : r->device;
+    n->state = n->device->create(r->p, r->threads, n->e);
     if (!n->state)
         return -1;
-    n->writer = frame_writer_create(r->p, r->device, n->state, r->frame, r->context, n->e);
+    n->writer = frame_writer_create(r->p, n->device, n->state, r->frame, r->context, n->e);
     return n->writer ? 0 : -1;
 }
 
@@ -272,13 +345,13 @@ static run_end end_of(const run *n)
     if (n->monitor)
         end.reading = n->monitor->reading;
     if (n->state)
-        end.bytes = n->r->device->bytes(n->state);
+        end.bytes = n->device->bytes(n->state);
     return end;
 }
 
 int run_count_crowded(run *n, err *e)
 {
-    const tled_executor *device = n->r->device;
+    const tled_executor *device = n->device;
     int64_t count = 0;
     if (n->state && device->crowded && device->crowded(n->state, &count, e))
         return -1;
@@ -304,7 +377,7 @@ int run_by(const run_setup *r, const run_live *live, int (*by)(run *n), run_end 
     if (frame_writer_close(n.writer, e)) /* what is sound is written whatever happened then */
         result = -1;
     if (n.state)
-        r->device->destroy(n.state);
+        n.device->destroy(n.state);
     monitor_destroy(n.monitor);
     fields_free(&n.checkpoint);
     fields_free(&n.began);

@@ -10,6 +10,9 @@
  * Of frames between two checks snapshots are taken on the way; they are written once the second check is known to be
  * sound, while the next steps are already under way. (Where the slots for snapshots do not suffice, those steps are
  * taken again for the frames.)
+ *
+ * A run to rest takes longer steps once the script is over (RUN_HASTE), unless the step is given. In single precision
+ * it ends in double where rounding keeps it from its tolerance: the state goes over as it is.
  */
 #ifndef SINEW_RUN_H
 #define SINEW_RUN_H
@@ -24,6 +27,7 @@ typedef struct run_course {
     int64_t from;              /* the step that the run began at */
     int64_t taken;             /* steps, each part of a cut one for itself, and those that were taken again */
     int cuts;                  /* each step is taken in 2^cuts */
+    double finer;              /* 1: the executor is the setup's `finer` by now; else 0 */
     double damping;            /* 1/s */
     double remaining, closest; /* shares of the displacement: to rest, and the least so far */
     int64_t closest_at;        /* the step that came so close */
@@ -34,6 +38,7 @@ typedef struct run_course {
 /* Where a run stands at a check: with the state's fields, all that decides how it goes on. */
 typedef struct run_point {
     double origin;     /* s: tled_plan's */
+    double rate;       /* 1/s: likewise; 0: the setup's */
     int64_t first;     /* tled_plan's: steps counted by now */
     double moved_most; /* m: monitor_reading's */
     run_course course;
@@ -69,22 +74,29 @@ typedef struct run_live {
 /* A safe step is at most this share of the stable one: it changes a little between two checks. */
 #define RUN_MARGIN .8
 
+/* On the way to rest, once nothing acts anew, steps are as long as this share of the stable one: they need not follow a
+ * motion, and the stable step hardly changes. They are cut, or made shorter, where they come to be more than the second
+ * share of it. */
+#define RUN_HASTE        .9
+#define RUN_HASTE_MARGIN .95
+
 typedef struct run_setup {
     const tled_problem *p;
     const tled_executor *device;
     pool *threads;
-    double rate;            /* steps a second */
-    bool rate_fixed;        /* never cut the step: fail instead */
-    int64_t check;          /* steps between checks */
-    int64_t steps;          /* how many to take; with rest: at most */
-    double end;             /* s: where it lies within the last of them, that step is shorter and ends there */
-    double rest;            /* tolerance: end at rest; < 0: after `steps` */
-    double frequency;       /* rad/s: relax_guess */
-    double damping;         /* 1/s */
-    bool adapt;             /* find the damping on the way, from the end of the script on */
-    bool single;            /* numbers of single precision, which may come no closer to rest: then fail */
-    double every;           /* s: a frame at each multiple; 0: the last state only */
-    bool first;             /* and a frame of the state that the run begins from */
+    double rate;                /* steps a second */
+    bool rate_fixed;            /* never cut the step: fail instead */
+    int64_t check;              /* steps between checks */
+    int64_t steps;              /* how many to take; with rest: at most */
+    double end;                 /* s: where it lies within the last of them, that step is shorter and ends there */
+    double rest;                /* tolerance: end at rest; < 0: after `steps` */
+    double frequency;           /* rad/s: relax_guess */
+    double damping;             /* 1/s */
+    bool adapt;                 /* find the damping on the way, from the end of the script on */
+    bool single;                /* numbers of single precision, which may come no closer to rest: then it goes on by: */
+    const tled_executor *finer; /* in double; NULL: none can, so that it fails */
+    double every;               /* s: a frame at each multiple; 0: the last state only */
+    bool first;                 /* and a frame of the state that the run begins from */
     run_log *log;           /* opened, or NULL: a row a check, or at each multiple of its interval, and at the end */
     const run_point *point; /* of a checkpoint, whose state is p's start: the run goes on from there; NULL: it begins */
     double save_every;      /* s: save at the first check at or past each multiple; 0: each minute of the clock */
@@ -98,6 +110,8 @@ typedef struct run_setup {
     /* Steps are cut in more parts than they were in this run so far: from the check on that `reading` is of; or those
      * to there, which it found not sound, were taken again. May be NULL. */
     void (*cut)(void *context, const monitor_reading *reading, int64_t parts);
+    /* Single precision comes no closer to rest than `closest`: the run goes on in `finer`. May be NULL. */
+    void (*refined)(void *context, double time, double closest);
     /* Every state before `at` is written; this one, of the fields that checkpoints have, is with `at` what a run can
      * go on from. First at the start. -1 with e filled ends the run. NULL: nothing is to be saved. */
     int (*save)(void *context, const run_point *at, double time, const field_values *state, err *e);

@@ -11,7 +11,12 @@ double run_now(const run *n)
 
 double run_part(const run *n)
 {
-    return n->live ? 1 / (n->r->rate * (double)n->parts) : ldexp(1 / n->r->rate, -n->course.cuts);
+    return n->live ? 1 / (n->plan.rate * (double)n->parts) : ldexp(1 / n->plan.rate, -n->course.cuts);
+}
+
+double run_margin(const run *n)
+{
+    return n->plan.rate == n->r->rate ? RUN_MARGIN : RUN_HASTE_MARGIN;
 }
 
 static int64_t parts_of(const run *n)
@@ -23,7 +28,7 @@ static int64_t parts_of(const run *n)
 
 static int monitor_at(run *n, double time)
 {
-    return monitor_read(n->monitor, n->r->device, n->state, time, n->e);
+    return monitor_read(n->monitor, n->device, n->state, time, n->e);
 }
 
 int run_monitor(run *n)
@@ -53,7 +58,7 @@ int run_diverged(run *n)
     char wrong[200];
     const tled_problem *p = n->r->p;
     const monitor_reading *s = &n->monitor->reading;
-    if (monitor_locate(n->monitor, n->r->device, n->state, n->e))
+    if (monitor_locate(n->monitor, n->device, n->state, n->e))
         return -1;
     int64_t element = s->broken >= 0 ? s->broken : s->stable_element;
     if (element < 0)
@@ -78,13 +83,13 @@ int run_restore(run *n)
     n->plan.first = n->saved_first;
     if (n->r->log && log_restore(n->r->log, n->e))
         return -1;
-    return n->r->device->restore(n->state, n->e);
+    return n->device->restore(n->state, n->e);
 }
 
 int run_save(run *n)
 {
     n->saved_first = n->plan.first;
-    return monitor_save(n->monitor, n->r->device, n->state, n->e);
+    return monitor_save(n->monitor, n->device, n->state, n->e);
 }
 
 /* ---- Steps */
@@ -107,7 +112,7 @@ static int step_evenly(run *n, int64_t to)
 {
     const int64_t count = (to - n->plan.first) * parts_of(n);
     const tled_plan cut = cut_plan(n, n->plan.first);
-    if (n->r->device->step(n->state, &cut, count, n->e))
+    if (n->device->step(n->state, &cut, count, n->e))
         return -1;
     n->dt = 1 / cut.rate;
     n->damped = n->course.damping;
@@ -145,7 +150,7 @@ static int take_snapshot(run *n)
     if (index >= n->slots && frame_writer_wait_fetched(n->writer, index - n->slots, n->e))
         return -1;
     n->frame_time[slot] = run_now(n);
-    return n->r->device->snapshot(n->state, slot, n->e);
+    return n->device->snapshot(n->state, slot, n->e);
 }
 
 /* The snapshots are of sound states: hands them on. */
@@ -174,7 +179,7 @@ static int log_state(run *n, bool shown)
                          .stable = n->monitor->reading.stable,
                          .damping = n->damped,
                          .remaining = n->course.remaining};
-    return log_read(n->r->log, n->r->device, n->state, &row, shown, n->e);
+    return log_read(n->r->log, n->device, n->state, &row, shown, n->e);
 }
 
 int run_log_sound(run *n)
@@ -197,7 +202,7 @@ static int find_part(run *n)
         return -1;
     n->plan.first++;
     for (int64_t i = 0; sound && i < parts_of(n); i++, cut.first++) {
-        if (n->r->device->step(n->state, &cut, 1, n->e) || monitor_at(n, tled_time(&cut, 1)))
+        if (n->device->step(n->state, &cut, 1, n->e) || monitor_at(n, tled_time(&cut, 1)))
             return -1;
         sound = run_is_sound(n);
     }

@@ -40,7 +40,7 @@ static int find_start(run *n, again from)
     for (int i = 0; i < p->fields.count; i++)
         if (from == AS_IT_BEGAN)
             memcpy(p->at_start.of[i], n->began.of[i], (size_t)fields_size(&p->fields, i) * sizeof(double));
-        else if (n->r->device->get(n->state, i, p->at_start.of[i], n->e))
+        else if (n->device->get(n->state, i, p->at_start.of[i], n->e))
             return -1;
     if (from != AS_IT_IS)
         memset(p->at_start.of[TLED_VELOCITY], 0, 3 * (size_t)p->nodes * sizeof(double));
@@ -61,9 +61,9 @@ static int make_again(run *n, again from)
     if (find_start(n, from) || run_count_crowded(n, n->e))
         return -1;
     p->start = run_now(n);
-    r->device->destroy(n->state);
-    n->state = r->device->create(p, r->threads, n->e);
-    n->writer = n->state ? frame_writer_create(p, r->device, n->state, r->frame, r->context, n->e) : NULL;
+    n->device->destroy(n->state);
+    n->state = n->device->create(p, r->threads, n->e);
+    n->writer = n->state ? frame_writer_create(p, n->device, n->state, r->frame, r->context, n->e) : NULL;
     return n->writer ? 0 : -1;
 }
 
@@ -78,7 +78,7 @@ static int take_over(run *n)
         sliding_follow(n->live->p->sliding, n->live->p->script);
     if (n->live->p->self_contact && n->live->p->self_contact->bones)
         sliding_follow(n->live->p->self_contact->bones, n->live->p->script);
-    const int more = n->r->device->reload ? n->r->device->reload(n->state, n->e) : 1;
+    const int more = n->device->reload ? n->device->reload(n->state, n->e) : 1;
     return more < 0 || (more && make_again(n, AS_IT_IS)) || run_monitor(n) ? -1 : 0;
 }
 
@@ -122,7 +122,7 @@ static int step_to_check(run *n, int64_t to)
 static int copy_displacement(void *context, double *to, err *e)
 {
     const run *n = context;
-    return n->r->device->get(n->state, TLED_DISPLACEMENT, to, e);
+    return n->device->get(n->state, TLED_DISPLACEMENT, to, e);
 }
 
 /* 1: done; 0: the caller has ended the run; -1. */

@@ -10,17 +10,19 @@ enum { CUTS_MAX = 10 }; /* a step cut 2^10 times is no step */
 
 typedef struct run {
     const run_setup *r;
-    const run_live *live; /* or NULL */
-    int64_t parts;        /* live: that each step is taken in */
-    int went_back;        /* live: since the last sound check: to the one before, then to the beginning */
-    field_values began;   /* live: the state that it began from; at rest when it is gone back to */
-    int restored;         /* live: in this tick */
-    int64_t crowded;      /* run_end's, of the states so far */
+    const run_live *live;        /* or NULL */
+    const tled_executor *device; /* whose state is below: the setup's, or its `finer` */
+    tled_problem finer;          /* the setup's, to go on from where single precision came no closer to rest */
+    int64_t parts;               /* live: that each step is taken in */
+    int went_back;               /* live: since the last sound check: to the one before, then to the beginning */
+    field_values began;          /* live: the state that it began from; at rest when it is gone back to */
+    int restored;                /* live: in this tick */
+    int64_t crowded;             /* run_end's, of the states so far */
     tled_state *state;
     monitor *monitor;
     run_course course;
     frame_writer *writer;
-    tled_plan plan;      /* plan.first: steps counted */
+    tled_plan plan;      /* plan.first: steps counted; plan.rate: the setup's, until it hastens to rest */
     int64_t last;        /* where it ends at the latest */
     bool is_last_short;  /* the step to there, which ends at r->end */
     bool rested;         /* at the last check: the run is over */
@@ -46,6 +48,9 @@ int run_by(const run_setup *r, const run_live *live, int (*by)(run *n), run_end 
 /* Where the state stands (s); and how long each part of a step is (s). */
 double run_now(const run *n);
 double run_part(const run *n);
+
+/* A safe step, as a share of the stable one: RUN_MARGIN, or RUN_HASTE_MARGIN. */
+double run_margin(const run *n);
 
 /* All below that return an int: -1 with n->e filled. */
 

@@ -253,6 +253,7 @@ static int take_frames(session *s, bool changed, err *e)
     if (count > 0)
         s->next_frame = last.index + 1;
     s->started = count > 0 && !changed;
+    s->run.first = (s->run.every > 0 || s->live) && !s->started;
     const int failed = count > 0 ? tled_problem_start(&s->problem, &last, &s->warnings, e) : 0;
     if (count > 0)
         sliding_start(&s->sliding, &last);
@@ -374,6 +375,18 @@ static const tled_executor *choose_device(session *s, const struct options *o, c
     return tled_executor_of(executor_choose(executors_for(o), device_names[o->device], &need, device, size, e));
 }
 
+/* What a run to rest in single precision goes on by where rounding stops it: the same device in double, if it can. */
+static const tled_executor *choose_finer(const session *s)
+{
+    char says[300];
+    err none = {0};
+    const executor_need need = tled_need(&s->problem);
+    if (!s->run.device || !s->run.single || s->run.rest < 0)
+        return NULL;
+    return tled_executor_of(
+        executor_choose(tled_executors_double, s->run.device->is.device, &need, says, sizeof says, &none));
+}
+
 /* In the model, for whoever asks for hourglass energy later. */
 static int say_control(model *m, hourglass_control control, err *e)
 {
@@ -440,6 +453,7 @@ static int prepare(session *s, const struct options *o, char *device, size_t siz
     choose_damping(s, o);
     s->run.single = o->precision;
     s->run.device = choose_device(s, o, device, size, e);
+    s->run.finer = choose_finer(s);
     /* Where a device computes, processors are free for frames. */
     if (!s->run.device ||
         folds_make(&s->folds, &s->problem, &s->m, s->run.device->monitor ? pool_threads(s->threads) : 1, e))
@@ -453,11 +467,11 @@ static void set_run(session *s, const struct options *o)
     s->run.p = &s->problem;
     s->run.threads = s->threads;
     s->run.every = o->every > 0 ? o->every : 0;
-    s->run.first = (s->run.every > 0 || s->live) && !s->started;
     s->run.context = s;
     s->run.frame = tled_frame_write;
     s->run.checked = checked;
     s->run.cut = say_cut;
+    s->run.refined = words_refined;
     s->cut = 1;
     s->log.every = fmax(o->log_every, 0);
 }
@@ -472,14 +486,36 @@ static int open_log(session *s, const struct options *o, err *e)
     return log_open(&s->log, o->log, &o->tsv, &s->m, s->run.point ? &s->run.point->log : NULL, e);
 }
 
+/* A run whose last state alone is wanted, to rest from rest, begins near its end if it can. */
+static int start_coarse(session *s, const struct options *o)
+{
+    const bool shown = o->every > 0 || o->log, goes_on = o->restart || s->next_frame;
+    coarse_told told = {0};
+    if (o->coarse || !s->run.adapt || o->dt > 0 || o->checkpoint || shown || goes_on)
+        return 0;
+    s->coarse = !coarse_start(&s->run, &s->problem, &s->m, &told);
+    words_coarse(s, &told);
+    return 0;
+}
+
+/* Where what came of that failed: from the beginning. */
+static int run_anew(session *s, const struct options *o, run_end *end, err *e)
+{
+    words_anew(s, e);
+    *e = (err){0};
+    s->coarse = false;
+    coarse_forget(&s->problem);
+    return choose_end(s, o, e) ? -1 : run_go(&s->run, end, e);
+}
+
 /* From the last frame that came, or from the checkpoint. */
 static int begin_run(session *s, const struct options *o, err *e)
 {
-    if (take_frames(s, o->materials || o->material.count, e) || choose_end(s, o, e))
+    set_run(s, o);
+    if (take_frames(s, o->materials || o->material.count, e) || start_coarse(s, o) || choose_end(s, o, e))
         return -1;
     if (s->collider.poses && !s->live)
         collider_begin(&s->collider, &s->problem, s->next_frame ? 0 : o->ramp, &s->warnings);
-    set_run(s, o);
     if (s->live)
         return live_open(s, o, e);
     return begin_checkpoints(s, o, e) || open_log(s, o, e) ? -1 : 0;
@@ -498,6 +534,8 @@ static int simulate(session *s, const struct options *o, const char *device, err
     progress_start(&s->progress, "tled-run", "steps", s->run.rest < 0 ? (double)s->run.steps : 0,
                    o->common.quiet || o->common.verbose);
     int result = s->live ? live_go(s, &end, e) : run_go(&s->run, &end, e);
+    if (result && s->coarse && !s->folds.frames)
+        result = run_anew(s, o, &end, e);
     progress_stop(&s->progress);
     if (s->live)
         live_end(s);

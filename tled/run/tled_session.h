@@ -35,6 +35,7 @@ typedef struct session {
     progress progress;
     checkpoint *checkpoint; /* NULL: none */
     int64_t next_frame;     /* its index */
+    bool coarse;            /* it begins from the rest of a coarser model */
     bool started;           /* the state that the run begins from has been written: as a frame that came */
     int64_t cut;            /* parts of a step, as said last */
     double stable;          /* s: at rest */

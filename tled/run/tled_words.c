@@ -35,7 +35,7 @@ void words_start(const session *s, const char *device, const struct options *o)
                  (long long)least, least == 1 ? "" : "s", CUT_LEAST, CUT_LEAST);
     tool_say(s->t, "stable step %.6g ms, dt %.6g ms, damping %.4g 1/s%s", 1e3 * s->stable,
              1e3 / r->rate / (double)live_parts(s->live), r->damping, r->adapt ? ", then adapted" : "");
-    if (!r->point && p->start > 0 && p->start >= o->ramp && (o->contract.count || o->gravity.count))
+    if (!r->point && !s->coarse && p->start > 0 && p->start >= o->ramp && (o->contract.count || o->gravity.count))
         tool_say(s->t, "the run begins after the ramp of %g s: -c and -g act in full from the first step", o->ramp);
     if (s->live)
         tool_say(s->t, "from %.6g s, %.6g frames a second", p->start, o->rate > 0 ? o->rate : 60);
@@ -47,6 +47,28 @@ void words_start(const session *s, const char *device, const struct options *o)
     else
         tool_say(s->t, "from %.6g s, %lld step%s%s", p->start, (long long)r->steps, r->steps == 1 ? "" : "s",
                  isfinite(r->end) ? ", the last one shorter" : "");
+}
+
+void words_refined(void *context, double time, double closest)
+{
+    session *s = context;
+    progress_clear(&s->progress);
+    tool_say(s->t, "at %.6g s single precision comes no closer to rest than %.3g of its displacement: on in double",
+             time, closest);
+}
+
+void words_coarse(const session *s, const coarse_told *told)
+{
+    if (s->coarse)
+        tool_detail(s->t, "the run begins from the rest of %d coarser model%s: %lld elements in all, %lld steps",
+                    told->models, told->models == 1 ? "" : "s", (long long)told->elements, (long long)told->steps);
+    else
+        tool_detail(s->t, "the run begins from no coarser model: %s", told->why);
+}
+
+void words_anew(const session *s, const err *e)
+{
+    tool_say(s->t, "begun from the rest of a coarser model, the run failed: %s; again, from the beginning", e->text);
 }
 
 /* Where multiples of an option's interval lie between two steps, other than the last's end, which is met. */

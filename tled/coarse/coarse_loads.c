@@ -1,0 +1,105 @@
+#include "tled/coarse/coarse_loads.h"
+
+#include "base/mem.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* How many of the eighths of a finer node each coarser one has so far, from which its holds are; 8: it lies there. */
+static void take_holds(coarse *c, int64_t n, uint8_t *eighths)
+{
+    int32_t parent[8];
+    const tled_problem *p = c->fine;
+    coarse_parents(c, n, parent);
+    for (int v = 0; v < 8; v++) {
+        uint8_t same = 0;
+        for (int w = 0; w < 8; w++)
+            same = (uint8_t)(same + (parent[w] == parent[v]));
+        if (same <= eighths[parent[v]])
+            continue;
+        const bool held =
+            p->hold[3 * n] != HOLD_FREE || p->hold[3 * n + 1] != HOLD_FREE || p->hold[3 * n + 2] != HOLD_FREE;
+        if (same < 8 && !held)
+            continue;
+        eighths[parent[v]] = same;
+        memcpy(c->problem.hold + 3 * (int64_t)parent[v], p->hold + 3 * n, 3 * sizeof *p->hold);
+    }
+}
+
+int coarse_holds(coarse *c, err *e)
+{
+    tled_problem *p = &c->problem;
+    uint8_t *eighths = mem_array(p->nodes, 1, "the coarser model", e);
+    if (!eighths)
+        return -1;
+    for (int64_t i = 0; i < 3 * p->nodes; i++)
+        p->hold[i] = HOLD_FREE;
+    for (int64_t n = 0; n < c->fine->nodes; n++)
+        take_holds(c, n, eighths);
+    free(eighths);
+    p->held = 0;
+    for (int64_t n = 0; n < p->nodes; n++)
+        p->held += p->hold[3 * n] != HOLD_FREE || p->hold[3 * n + 1] != HOLD_FREE || p->hold[3 * n + 2] != HOLD_FREE;
+    return 0;
+}
+
+typedef struct entry {
+    int32_t node, curve, spring;
+    double share;
+} entry;
+
+static int order(const void *one, const void *other)
+{
+    const entry *a = one, *b = other;
+    if (a->node != b->node)
+        return a->node < b->node ? -1 : 1;
+    return (a->curve > b->curve) - (a->curve < b->curve);
+}
+
+/* The entries of all finer nodes, by their parents in order; those of one node and curve as one. Returns how many. */
+static int64_t list_entries(const coarse *c, entry *list)
+{
+    const tled_problem *p = c->fine;
+    int64_t count = 0, kept = 0;
+    for (int64_t n = 0; n < p->nodes; n++) {
+        int32_t parent[8];
+        if (p->force_start[n] == p->force_start[n + 1])
+            continue;
+        coarse_parents(c, n, parent);
+        for (int32_t i = p->force_start[n]; i < p->force_start[n + 1]; i++)
+            for (int v = 0; v < 8; v++)
+                list[count++] = (entry){parent[v], p->force_curve[i], p->force_spring[i], p->force_share[i] / 8};
+    }
+    qsort(list, (size_t)count, sizeof *list, order);
+    for (int64_t i = 0; i < count; i++)
+        if (kept && !order(&list[kept - 1], &list[i]))
+            list[kept - 1].share += list[i].share;
+        else
+            list[kept++] = list[i];
+    return kept;
+}
+
+int coarse_loads(coarse *c, err *e)
+{
+    tled_problem *p = &c->problem;
+    const int64_t most = 8 * (int64_t)c->fine->force_start[c->fine->nodes];
+    entry *list = mem_array(most, sizeof *list, "the coarser model", e);
+    const int64_t count = list ? list_entries(c, list) : 0;
+    free(p->force_curve);
+    free(p->force_spring);
+    free(p->force_share);
+    p->force_curve = mem_array(count, sizeof *p->force_curve, "the forces", e);
+    p->force_spring = mem_array(count, sizeof *p->force_spring, "the forces", e);
+    p->force_share = mem_array(count, sizeof *p->force_share, "the forces", e);
+    const bool failed = !list || !p->force_curve || !p->force_spring || !p->force_share;
+    for (int64_t i = 0; i < count && !failed; i++) {
+        p->force_curve[i] = list[i].curve;
+        p->force_spring[i] = list[i].spring;
+        p->force_share[i] = list[i].share;
+        p->force_start[list[i].node + 1]++;
+    }
+    for (int64_t n = 0; n < p->nodes && !failed; n++)
+        p->force_start[n + 1] += p->force_start[n];
+    free(list);
+    return failed ? -1 : 0;
+}
