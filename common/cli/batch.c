@@ -308,21 +308,26 @@ static void say_done(batch *b, const ready *r, const char *said, double took)
     pthread_mutex_unlock(&b->lock);
 }
 
-static void do_job(batch *b, job *j)
+static void work(batch *b, job *j, ready *r)
 {
     const double began = clock_now();
     char said[BATCH_SAID] = "";
     err why = {0};
-    ready r;
-    if (make_ready(b, j, &r, &why)) {
+    r->t.told = &b->told;
+    if (b->use->work(b->use->context, &r->t, r->options, said, &why))
         say_failed(b, j, &why);
-    } else {
-        r.t.told = &b->told;
-        if (b->use->work(b->use->context, &r.t, r.options, said, &why))
-            say_failed(b, j, &why);
-        else
-            say_done(b, &r, said, clock_now() - began);
-    }
+    else
+        say_done(b, r, said, clock_now() - began);
+}
+
+static void do_job(batch *b, job *j)
+{
+    err why = {0};
+    ready r;
+    if (make_ready(b, j, &r, &why))
+        say_failed(b, j, &why);
+    else
+        work(b, j, &r);
     release(&r);
 }
 
