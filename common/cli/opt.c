@@ -9,11 +9,13 @@
 
 enum { MODELS = 1 << 9, THREADED = 1 << 10, VOLUMES = 1 << 11 };
 
+#define OUTPUT (OPT_OUTPUT | OPT_FILE | OPT_WRITES | OPT_JOB)
+
 /* The options that every tool has. MODELS: only those that write a model; THREADED: only those with threads; VOLUMES:
  * those that read volume images. */
 #define COMMON(field) offsetof(opt_common, field)
 static const opt common_options[] = {
-    {OPT_COMMON, 'o', "output", "FILE", OPT_TEXT, COMMON(output), 0, 0, NULL, OPT_OUTPUT | OPT_FILE | OPT_WRITES,
+    {OPT_COMMON, 'o', "output", "FILE", OPT_TEXT, COMMON(output), 0, 0, NULL, OUTPUT,
      "write FILE, whole or not at all [default stdout]"},
     {OPT_COMMON, 0, "text", NULL, OPT_FLAG, COMMON(text), 0, 0, NULL, OPT_OUTPUT | MODELS,
      "write the model as text [default binary]"},
@@ -265,6 +267,7 @@ typedef struct scan {
     char **argv;
     void *options;
     uint64_t seen; /* bit i: option i was given */
+    bool is_job;
 } scan;
 
 static void mark_seen(scan *s, const opt *o)
@@ -279,6 +282,9 @@ static void mark_seen(scan *s, const opt *o)
 static int take(scan *s, const opt *o, const char *value, err *e)
 {
     mark_seen(s, o);
+    if (s->is_job && !(o->flags & OPT_JOB))
+        return o->name ? err_usage(e, "a job with --%s; expected it on the command line, for all jobs", o->name)
+                       : err_usage(e, "a job with -%c; expected it on the command line, for all jobs", o->letter);
     if (o->kind != OPT_FLAG && !value) {
         if (s->at + 1 >= s->argc)
             return err_usage(e, "%s needs a value: %s", s->argv[s->at], o->arg);
@@ -331,7 +337,7 @@ static int check_required(const scan *s, int operands, err *e)
 {
     const opt *o;
     for (int i = 0; i < 64 && (o = opt_at(s->tool, i)); i++)
-        if (o->flags & OPT_REQUIRED && !(s->seen >> i & 1))
+        if (!s->is_job && o->flags & OPT_REQUIRED && !(s->seen >> i & 1))
             return missing_option(o, e);
     if (operands < s->tool->operands_min)
         return err_usage(e, "missing operand; expected %s", s->tool->operands);
@@ -344,10 +350,11 @@ static int check_required(const scan *s, int operands, err *e)
     return 0;
 }
 
-int opt_parse(const opt_tool *tool, int argc, char **argv, void *options, err *e)
+static int parse(scan s, err *e)
 {
-    scan s = {.tool = tool, .argc = argc, .argv = argv, .options = options};
-    const opt_common *common = options;
+    const int argc = s.argc;
+    char **const argv = s.argv;
+    const opt_common *common = s.options;
     bool only_operands = false;
     int operands = 0;
     for (s.at = 1; s.at < argc; s.at++) {
@@ -365,4 +372,14 @@ int opt_parse(const opt_tool *tool, int argc, char **argv, void *options, err *e
     if (common->help || common->version || common->table)
         return operands;
     return check_required(&s, operands, e) ? -1 : operands;
+}
+
+int opt_parse(const opt_tool *tool, int argc, char **argv, void *options, err *e)
+{
+    return parse((scan){.tool = tool, .argc = argc, .argv = argv, .options = options}, e);
+}
+
+int opt_parse_job(const opt_tool *tool, int argc, char **argv, void *options, err *e)
+{
+    return parse((scan){.tool = tool, .argc = argc, .argv = argv, .options = options, .is_job = true}, e);
 }

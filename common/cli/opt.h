@@ -56,6 +56,7 @@ enum {
     OPT_FILE = 8,     /* its text names a file: provenance has the base name only, completion offers files */
     OPT_WRITES = 16,  /* its text names a file, or files by a number in it, that are written: nothing else may be */
     OPT_ALSO = 32,    /* another name of the option before it, with the same `to`: left out of the synopsis */
+    OPT_JOB = 128,    /* a job of --batch may have it (cli/batch.h) */
     OPT_NAMED =
         64 /* its text is NAME=VALUE, or NAME:VALUE; one that ends in .obj or .obj.gz is a file, as with OPT_FILE */
 };
@@ -107,6 +108,9 @@ typedef struct opt_tool {
  * argv[1]. Returns the count of operands, or -1 with e filled (status 2). With -h, -V or --table, nothing more is
  * required. */
 int opt_parse(const opt_tool *tool, int argc, char **argv, void *options, err *e);
+
+/* The same for the words of a job, from argv[1] on: only options that jobs may have, over those of the command line. */
+int opt_parse_job(const opt_tool *tool, int argc, char **argv, void *options, err *e);
 
 /* Sets one option by its long name, as the command line does: for values that change while a tool runs. The text must
  * last as long as the options. -1 with e filled, and that option's value may be lost. */

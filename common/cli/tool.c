@@ -109,8 +109,7 @@ static const char *option_name(const opt *o, char to[64])
     return to;
 }
 
-/* The file that an option names, or NULL. */
-static const char *file_of(const tool *t, const opt *o)
+const char *tool_file(const tool *t, const opt *o)
 {
     const char *text = o->kind == OPT_TEXT ? *(const char *const *)((const char *)t->common + o->to) : NULL;
     if (text && o->choices && strstr(o->choices, "convex:"))
@@ -142,7 +141,7 @@ int tool_check_written(const tool *t, const char *option, const char *path, err 
         if (path_is_same(path, t->operand[i]))
             return refuse(option, path, "what is read,", t->operand[i], e);
     for (int i = 0; (o = opt_at(t->table, i)); i++) {
-        const char *other = strcmp(option_name(o, name), option) != 0 ? file_of(t, o) : NULL;
+        const char *other = strcmp(option_name(o, name), option) != 0 ? tool_file(t, o) : NULL;
         snprintf(what, sizeof what, "the file of %s", name);
         if (other && path_is_same(path, other))
             return refuse(option, path, what, other, e);
@@ -155,7 +154,7 @@ static int check_written(const tool *t, err *e)
     char name[64];
     const opt *o;
     for (int i = 0; (o = opt_at(t->table, i)); i++) {
-        const char *path = o->flags & OPT_WRITES ? file_of(t, o) : NULL;
+        const char *path = o->flags & OPT_WRITES ? tool_file(t, o) : NULL;
         if (path && tool_check_written(t, option_name(o, name), path, e))
             return -1;
     }
@@ -180,6 +179,18 @@ int tool_begin(tool *t, const opt_tool *table, int argc, char **argv, void *opti
     return t->provenance ? 0 : -1;
 }
 
+int tool_begin_job(tool *t, const tool *of, void *options, const char *about, err *e)
+{
+    *t = *of;
+    t->common = options;
+    t->about = about;
+    t->provenance = NULL;
+    if (check_written(t, e))
+        return -1;
+    t->provenance = opt_provenance(t->table, options, t->operands, t->operand, e);
+    return t->provenance ? 0 : -1;
+}
+
 int tool_provenance(tool *t, err *e, const char *format, ...)
 {
     char more[LINE];
@@ -201,7 +212,8 @@ int tool_provenance(tool *t, err *e, const char *format, ...)
 static void print(const tool *t, const char *kind, const char *text)
 {
     char line[LINE];
-    int n = snprintf(line, sizeof line, "%s: %s%s", t->table->name, kind, text);
+    const char *about = t->about ? t->about : "";
+    int n = snprintf(line, sizeof line, "%s: %s%s%s%s", t->table->name, kind, about, *about ? ": " : "", text);
     if (n > LINE - 2)
         n = LINE - 2;
     line[n] = '\0';
@@ -239,9 +251,19 @@ int tool_end(tool *t, const err *e)
         print_error(t, e);
     if (e->status && e->help == ERR_SHOW_USAGE)
         print_usage(t);
+    tool_free(t);
+    return e->status;
+}
+
+void tool_free(tool *t)
+{
     free(t->provenance);
     t->provenance = NULL;
-    return e->status;
+}
+
+void tool_failed(const tool *t, const err *e)
+{
+    print(t, "", e->text);
 }
 
 int tool_need_stdin(const char *what, err *e)
@@ -303,10 +325,24 @@ int tool_table(const tool *t, const text_table *rows, err *e, const char *title,
     return o ? 0 : -1;
 }
 
+/* Whether nobody has given this warning; it is given now. */
+static bool is_new(tool_told *told, const char *line)
+{
+    bool found = false;
+    pthread_mutex_lock(&told->lock);
+    for (int i = 0; !found && i < told->lines.count; i++)
+        found = !strcmp(told->lines.line[i], line);
+    if (!found)
+        notes_add(&told->lines, "%s", line);
+    pthread_mutex_unlock(&told->lock);
+    return !found;
+}
+
 void tool_warn(const tool *t, notes *n)
 {
     for (int i = 0; i < n->count; i++)
-        print(t, "warning: ", n->line[i]);
+        if (!t->told || is_new(t->told, n->line[i]))
+            print(t, "warning: ", n->line[i]);
     notes_free(n);
 }
 

@@ -40,7 +40,7 @@ model_type model_type_of(const char *name)
 
 void model_array_free(model_array *a)
 {
-    if (a->type == MODEL_STR && a->data)
+    if (a->type == MODEL_STR && a->data && !a->lent)
         for (int64_t i = 0; i < a->rows * a->columns; i++)
             free(a->str[i]);
     if (!a->lent)

@@ -1,7 +1,11 @@
 #include "model/stage.h"
 
+#include "base/mem.h"
+#include "model/model_share.h"
+
 #include <inttypes.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -41,6 +45,17 @@ int stage_write(stage *s, model *m, err *e)
     return model_write(s->writer, m, e);
 }
 
+/* Those that came before, and were kept for several stages. */
+static int64_t pass_kept(stage *s, model_writer *w, frame *last, err *e)
+{
+    for (int64_t i = 0; w && i < s->kept_count; i++)
+        if (model_write_frame(w, &s->kept[i], e))
+            return -1;
+    if (last && s->kept_count && frame_share(last, &s->kept[s->kept_count - 1], e))
+        return -1;
+    return s->kept_count;
+}
+
 /* Reads the frames that are left, and writes them where w is not NULL; last, where it is not NULL, gets the last one.
  * Returns how many, or -1. */
 static int64_t pass_frames(stage *s, const model *m, model_writer *w, frame *last, err *e)
@@ -48,6 +63,8 @@ static int64_t pass_frames(stage *s, const model *m, model_writer *w, frame *las
     frame f = {0};
     int64_t count = 0;
     int got = s->reader ? 1 : 0;
+    if (s->kept)
+        return pass_kept(s, w, last, e);
     while (got > 0) {
         got = model_read_frame(s->reader, m, &f, e);
         if (got > 0 && w && model_write_frame(w, &f, e))
@@ -71,6 +88,32 @@ int stage_copy_frames(stage *s, const model *m, err *e)
 int64_t stage_last_frame(stage *s, const model *m, bool copied, frame *last, err *e)
 {
     return pass_frames(s, m, copied ? s->writer : NULL, last, e);
+}
+
+int64_t stage_keep_frames(stage *s, const model *m, frame **list, err *e)
+{
+    int64_t count = 0, room = 0;
+    for (;;) {
+        frame f = {0};
+        const int got = model_read_frame(s->reader, m, &f, e);
+        if (got > 0 && !MEM_ROOM(list, &room, count + 1, "the frames", e)) {
+            (*list)[count++] = f;
+            continue;
+        }
+        frame_free(&f);
+        if (!got && !e->status)
+            return count;
+        stage_free_frames(*list, count);
+        *list = NULL;
+        return -1;
+    }
+}
+
+void stage_free_frames(frame *list, int64_t count)
+{
+    for (int64_t i = 0; i < count; i++)
+        frame_free(&list[i]);
+    free(list);
 }
 
 int stage_drop_frames(stage *s, const model *m, notes *warnings, err *e)
@@ -123,6 +166,11 @@ void stage_close(stage *s, const tool *t, err *e)
         close_failed(s, t, e);
     }
     model_writer_close(s->writer);
+    stage_close_input(s);
+}
+
+void stage_close_input(stage *s)
+{
     model_reader_close(s->reader);
     in_close(s->source);
     *s = (stage){0};

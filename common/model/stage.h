@@ -15,6 +15,8 @@ typedef struct stage {
     bool lines_follow; /* the model on stdin, for the caller to take (live/lines.h); set before stage_read */
     out *sink;
     model_writer *writer;
+    const frame *kept; /* in place of a reader: the frames that came, borrowed */
+    int64_t kept_count;
 } stage;
 
 /* Opens what the tool has: the output first (-o, --text, -z, from t's options; binary to a terminal is refused), so
@@ -34,11 +36,19 @@ int stage_copy_frames(stage *s, const model *m, err *e);
  * *last, zeroed before and the caller's to free; or -1 with e filled. */
 int64_t stage_last_frame(stage *s, const model *m, bool copied, frame *last, err *e);
 
+/* Reads the frames that are left, all of them, into *list, for other stages: zeroed before, and the caller's to free
+ * (stage_free_frames). Returns how many, or -1 with e filled. */
+int64_t stage_keep_frames(stage *s, const model *m, frame **list, err *e);
+void stage_free_frames(frame *list, int64_t count);
+
 /* Reads the frames that are left and drops them, noting how many. */
 int stage_drop_frames(stage *s, const model *m, notes *warnings, err *e);
 
 /* Ends and closes all: `end` where e is clear, else `fail` (or no file). An error of closing goes into e. s may be
  * part open, or zeroed after a usage error: then `fail` is written all the same if stdout is a pipe. */
 void stage_close(stage *s, const tool *t, err *e);
+
+/* Closes one that has no output. */
+void stage_close_input(stage *s);
 
 #endif

@@ -23,9 +23,11 @@ struct options {
     bool live, force;
     double rate; /* below 0: not given */
     const char *lines, *record, *replay, *body, *marker, *rigid_poses;
+    const char *batch;
     hourglass_control control; /* what hourglass says, once checked */
 };
 
 extern const opt_tool options_table;
+extern const struct options options_defaults;
 
 #endif

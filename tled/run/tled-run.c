@@ -1,7 +1,7 @@
 /* tled-run: moves a voxel model by total Lagrangian explicit dynamics under gravity, forces, displacements and the
  * contraction of its muscles, and writes frames. Miller et al. 2007; W&M section 4.2.
  */
-#include "base/mem.h"
+#include "cli/batch.h"
 #include "live/stop.h"
 #include "model/hourglass_text.h"
 #include "model/materials.h"
@@ -11,6 +11,7 @@
 #include "tled/problem/step.h"
 #include "tled/run/fingerprint.h"
 #include "tled/run/timeline.h"
+#include "tled/run/tled_batch.h"
 #include "tled/run/tled_frame.h"
 #include "tled/run/tled_live.h"
 #include "tled/run/tled_words.h"
@@ -437,7 +438,7 @@ static int prepare(session *s, const struct options *o, char *device, size_t siz
     if (!s->threads)
         return -1;
     s->problem.threads = s->threads;
-    if (change_materials(s, o, e) || read_collider(s, o, e) || make_script(s, o, e) ||
+    if ((!s->card && change_materials(s, o, e)) || read_collider(s, o, e) || make_script(s, o, e) ||
         tled_problem_make(&s->problem, &s->m, &s->script, o->control, e) || say_control(&s->m, o->control, e) ||
         sliding_make(&s->sliding, &s->problem, &s->m, o->friction, e) ||
         self_contact_make(&s->skin, &s->problem, &s->m, &s->sliding, o->friction, NULL, e) || check_friction(s, o, e) ||
@@ -505,7 +506,7 @@ static int run_anew(session *s, const struct options *o, run_end *end, err *e)
     *e = (err){0};
     s->coarse = false;
     coarse_forget(&s->problem);
-    return choose_end(s, o, e) ? -1 : run_go(&s->run, end, e);
+    return choose_end(s, o, e) ? -1 : tled_batch_run(s, end, e);
 }
 
 /* From the last frame that came, or from the checkpoint. */
@@ -522,9 +523,8 @@ static int begin_run(session *s, const struct options *o, err *e)
 }
 
 /* Writes frames, and the log, as the run goes. */
-static int simulate(session *s, const struct options *o, const char *device, err *e)
+static int simulate(session *s, const struct options *o, const char *device, run_end *end, err *e)
 {
-    run_end end = {0};
     if (begin_run(s, o, e))
         return -1;
     tool_warn(s->t, &s->warnings);
@@ -533,16 +533,16 @@ static int simulate(session *s, const struct options *o, const char *device, err
     words_between(s, "--log-every", "row", s->log.every);
     progress_start(&s->progress, "tled-run", "steps", s->run.rest < 0 ? (double)s->run.steps : 0,
                    o->common.quiet || o->common.verbose);
-    int result = s->live ? live_go(s, &end, e) : run_go(&s->run, &end, e);
+    int result = s->live ? live_go(s, end, e) : tled_batch_run(s, end, e);
     if (result && s->coarse && !s->folds.frames)
-        result = run_anew(s, o, &end, e);
+        result = run_anew(s, o, end, e);
     progress_stop(&s->progress);
     if (s->live)
         live_end(s);
     if (result)
-        words_folds(s, &end, false);
+        words_folds(s, end, false);
     else
-        words_end(s, &end);
+        words_end(s, end);
     return result;
 }
 
@@ -563,46 +563,82 @@ static int write_model(session *s, tool *t, const struct options *o, err *e)
     return say_provenance(t, s, o, e) || stage_write(&s->stage, &s->m, e) ? -1 : 0;
 }
 
+/* Of a session whose model has come, to the end of its run. */
+static int run_session(session *s, tool *t, const struct options *o, run_end *end, err *e)
+{
+    char device[300] = "";
+    return prepare(s, o, device, sizeof device, e) || write_model(s, t, o, e) || simulate(s, o, device, end, e) ? -1
+                                                                                                                : 0;
+}
+
+static void end_session(session *s, tool *t, err *e)
+{
+    tool_warn(t, &s->warnings);
+    if (!t->done)
+        end_output(s, t, e);
+    end_checkpoints(s, e);
+    executor_ahead_wait(&s->ahead);
+    live_destroy(s->live);
+    pool_destroy(s->threads);
+    results_destroy(s->results);
+    free(s->activation);
+    folds_free(&s->folds);
+    tled_problem_free(&s->problem);
+    collider_free(&s->collider);
+    sliding_free(&s->sliding);
+    self_contact_free(&s->skin);
+    script_free(&s->script);
+    expressions_free(&s->expressions);
+    model_free(&s->m);
+}
+
+static int check_job(void *options, err *e)
+{
+    return check_end(options, e) || read_control(options, e) ? -1 : 0;
+}
+
+/* A job of --batch: a run like any other, of the model that all jobs share. */
+static int run_job(void *context, tool *t, void *options, char said[BATCH_SAID], err *e)
+{
+    session s = {.t = t};
+    run_end end = {0};
+    if (!stage_open_output(&s.stage, t, e) && !tled_batch_share(context, &s, e) &&
+        !run_session(&s, t, options, &end, e))
+        tled_batch_words(&end, said);
+    end_session(&s, t, e);
+    return e->status ? -1 : 0;
+}
+
+static int run_batch(const tool *t, struct options *o, err *e)
+{
+    tled_batch b = {.base = {.t = t}};
+    const batch_use use = {sizeof *o, o, check_job, run_job, &b};
+    const int failed = tled_batch_check(o, e) || stage_read(&b.base.stage, &b.base.m, e) ||
+                               change_materials(&b.base, o, e) || tled_batch_read(&b, o, e) ||
+                               batch_go(t, o->batch, &use, e)
+                           ? -1
+                           : 0;
+    tled_batch_free(&b);
+    return failed;
+}
+
 static int run_tool(int argc, char **argv)
 {
-    struct options o = {.dt = -1,
-                        .seconds = -1,
-                        .rest = -1,
-                        .ramp = .1,
-                        .damping = -1,
-                        .every = -1,
-                        .between = -1,
-                        .log_every = -1,
-                        .repulsion = 1,
-                        .rate = -1,
-                        .checkpoint_every = -1};
+    struct options o = options_defaults;
     err e = {0};
     tool t = {0};
     session s = {.t = &t};
-    char device[300] = "";
+    run_end end = {0};
     if (tool_begin(&t, &options_table, argc, argv, &o, &e) || t.done)
         goto out;
-    if (read_input(&s, &t, &o, &e) || prepare(&s, &o, device, sizeof device, &e) || write_model(&s, &t, &o, &e) ||
-        simulate(&s, &o, device, &e))
-        goto out;
+    if (o.batch) {
+        run_batch(&t, &o, &e);
+        return tool_end(&t, &e);
+    }
+    if (!read_input(&s, &t, &o, &e))
+        run_session(&s, &t, &o, &end, &e);
 out:
-    tool_warn(&t, &s.warnings);
-    if (!t.done)
-        end_output(&s, &t, &e);
-    end_checkpoints(&s, &e);
-    executor_ahead_wait(&s.ahead);
-    live_destroy(s.live);
-    pool_destroy(s.threads);
-    results_destroy(s.results);
-    free(s.activation);
-    folds_free(&s.folds);
-    tled_problem_free(&s.problem);
-    collider_free(&s.collider);
-    sliding_free(&s.sliding);
-    self_contact_free(&s.skin);
-    script_free(&s.script);
-    expressions_free(&s.expressions);
-    model_free(&s.m);
+    end_session(&s, &t, &e);
     return tool_end(&t, &e);
 }
 

@@ -36,6 +36,7 @@ typedef struct session {
     checkpoint *checkpoint; /* NULL: none */
     int64_t next_frame;     /* its index */
     bool coarse;            /* it begins from the rest of a coarser model */
+    pthread_mutex_t *card;  /* of a batch, whose model is as it is to be: of what a card computes; NULL: of none */
     bool started;           /* the state that the run begins from has been written: as a frame that came */
     int64_t cut;            /* parts of a step, as said last */
     double stable;          /* s: at rest */

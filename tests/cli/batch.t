@@ -1,0 +1,133 @@
+#!/bin/sh
+# --batch: the bytes of separate runs, whatever fails beside, for any number of threads.
+# shellcheck source=tests/cli/lib.sh
+. "$(dirname "$0")/lib.sh"
+
+like() {
+    printf '%s\n' "$1" | grep -q -- "$2"
+    is $? 0 "$3"
+}
+
+# A ball of tissue about one of bone, with a muscle.
+{
+    awk -v r=50 -v n=24 -v g=skin -f tests/cli/sphere.awk
+    awk -v r=20 -v n=16 -v g=skull -f tests/cli/sphere.awk | awk -v from=$((2 + 23 * 48)) '$1 == "f" { for (i = 2; i <= NF; i++) $i += from } 1'
+    awk -v r=14 -v n=12 -v g=muscle_a -f tests/cli/sphere.awk |
+        awk -v from=$((2 + 23 * 48 + 2 + 15 * 32)) '$1 == "f" { for (i = 2; i <= NF; i++) $i += from } $1 == "v" { $2 += 28 } 1'
+} >"$T/ball.obj"
+voxelise -q --unit mm -s 8 "$T/ball.obj" 2>/dev/null | attach -q >"$T/ball"
+cd "$T" || exit 1
+printf '0 a 0\n' >broken.script
+run="tled-run -q -d cpu -t 0.01 --every 0.005"
+
+# ---- The same bytes
+cat >jobs.txt <<'END'
+# Expressions of a ball
+-c a=0.1 -o one        # a comment
+
+-c a=0.05 --ramp 0 -o 'with blank'
+	-g 0,0,-9.81 -o "quoted \"b\"" --log three.tsv
+-c a=0.1 -g 1,0,0 -o four\ th
+END
+$run -c a=0.1 <ball >apart1
+$run -c a=0.05 --ramp 0 <ball >apart2
+$run -g 0,0,-9.81 --log apart3.tsv <ball >apart3
+$run -c a=0.1 -g 1,0,0 <ball >apart4
+for threads in 1 2 5; do
+    rm -f one with* quoted* four*
+    $run --threads $threads --batch jobs.txt <ball >said 2>&1
+    is "$? $(wc -c <said)" "0 0" "jobs on $threads threads are done, and nothing is said with -q"
+    cmp -s one apart1 && cmp -s 'with blank' apart2 && cmp -s 'quoted "b"' apart3 && cmp -s 'four th' apart4
+    is $? 0 "their results have the bytes of separate runs, on $threads threads"
+done
+cut -f 1-18 apart3.tsv >apart.log
+cut -f 1-18 three.tsv | cmp -s - apart.log
+is $? 0 "and a log, but for its clock"
+tled-run -d cpu -t 0.01 --batch jobs.txt <ball 2>&1 | sed 's/; [0-9.e-]* s$//' | sort >said
+is "$(wc -l <said) $(grep -c '^tled-run: jobs.txt:[2456]: .*: at 0.01 s, after [0-9]* steps, largest displacement [0-9.e-]* mm$' said)" "4 4" "without -q a line is said for each job"
+$run -c a=0.1 -o first <ball
+printf -- '-c a=0.1 -o second\n' >jobs.txt
+$run --batch jobs.txt <first
+$run -c a=0.1 <first >apart1
+cmp -s second apart1
+is $? 0 "a job goes on from the last frame that came, and passes frames on"
+$run -m tissue.E=2000 --batch jobs.txt <first 2>/dev/null
+$run -m tissue.E=2000 -c a=0.1 <first 2>/dev/null >apart1
+cmp -s second apart1
+is $? 0 "as with a material that changes, whose frames are dropped"
+
+# ---- What fails
+mkdir folder
+cat >jobs.txt <<'END'
+-c a=0.1 -o one
+-c a=0.1
+-c nose=0.4 -o two
+--script none.script -o three
+--script broken.script -o four
+-c a=0.1 -o none/five
+-c a=0.1 --device cpu -o six
+-c a=0.1 -o -
+-c 'a=0.1 -o eight
+a=0.1 -o nine
+--script - -o ten
+-c a=0.1 -o folder
+-c a=0.1 --log one.log -o one.log
+-c a=0.1 -o last
+END
+rm -f one
+$run --batch jobs.txt <ball >out 2>said
+is "$? $(wc -c <out)" "1 0" "where jobs fail the status is 1, and standard output is empty"
+cmp -s one last && [ ! -e two ] && [ ! -e three ] && [ ! -e four ] && [ ! -e six ] && [ ! -e ten ] && [ ! -e one.log ]
+is $? 0 "the other jobs are done, and those leave nothing"
+is "$(sed -n 's/^tled-run: jobs.txt:\([0-9]*\): .*/\1/p' said | sort -n | tr '\n' ' ')$(tail -1 said)" "2 3 4 5 6 7 8 9 10 11 12 13 tled-run: jobs.txt: 12 of 14 jobs failed" "each says its line"
+for words in '2: a job without -o' "3: -c: unknown muscle 'nose'" '4: none.script: cannot open' "5: broken.script:1: " '6: none/five: cannot create' \
+    '7: a job with --device' '8: --output -' '9: a quote has no end' "10: extra operand 'a=0.1'" '11: --script -' '12: folder: ' '13: -.* .one.log. would overwrite'; do
+    like "$(cat said)" "jobs.txt:$words" "line $words"
+done
+printf -- '-c a=0.1 -o same\n-c a=0.05 -o new\n-c a=0.3 -o ./folder/../same\n' >jobs.txt
+$run --batch jobs.txt <ball 2>said
+is "$? $(find . -name same -o -name new | wc -l)" "1 0" "two jobs with one output: nothing is done"
+like "$(cat said)" "jobs.txt:3: writes '.*/same', which the job of line 1 writes; expected another file" "and they are named"
+printf -- '-c a=0.1 -o new\n--script new -o next\n' >jobs.txt
+$run --batch jobs.txt <ball 2>said
+is "$?" 1 "a job that reads what another writes is refused"
+like "$(cat said)" "jobs.txt:2: reads '.*/new', which the job of line 1 writes" "by name"
+for empty in '' '# nothing
+
+'; do
+    printf '%s' "$empty" >jobs.txt
+    $run --batch jobs.txt <ball 2>said
+    is "$? $(cat said)" "1 tled-run: jobs.txt: no job; expected lines of options, each with -o FILE" "a file without jobs"
+done
+# What tears the tissue, where steps are fixed.
+printf -- '-c a=0.1 -o calm\n-g 0,0,-1e9 --ramp 0 -o torn\n' >jobs.txt
+rm -f torn
+$run --dt 1e-4 --batch jobs.txt <ball 2>said
+is "$? $(ls calm) $(ls torn 2>/dev/null)" "1 calm " "a job that diverges fails alone"
+like "$(cat said)" "jobs.txt:2: .*" "and says so"
+for option in '-o x' --live '--checkpoint x' '--restart x' '--record x' '--control x' '--replay x' '--rate 5' '--log x' --force '--checkpoint-every 1'; do
+    # shellcheck disable=SC2086 # words
+    tled-run -q $option --batch jobs.txt <ball >out 2>said
+    is "$? $(grep -c -- "${option%% *} with --batch; expected" said)" "2 1" "$option with --batch is refused"
+done
+
+# ---- Memory goes by the jobs at once, not by all
+awk 'BEGIN { for (i = 0; i < 300; i++) printf "-c a=%g -n 1 -o many/%d\n", i / 300, i }' >jobs.txt
+head -2 jobs.txt >few
+mkdir many
+peak() {
+    tled-run -q -d cpu --threads 2 --batch "$1" <ball 2>said &
+    pid=$!
+    most=0
+    while now=$(awk '/VmHWM/ { print $2 }' /proc/$pid/status 2>/dev/null) && [ -n "$now" ]; do most=$now; done
+    wait $pid
+}
+if [ -z "$SINEW_SANITIZED" ]; then
+    peak few
+    few=$most
+    peak jobs.txt
+    is "$(find many -type f | wc -l)" 300 "300 jobs are done"
+    [ "$most" -lt $((few + 20000)) ]
+    is $? 0 "300 jobs take not much more memory than two ($most and $few KiB)"
+fi
+done_testing
