@@ -115,7 +115,7 @@ $(BUILD)/quick-$(CUDA_QUICK):
 	@touch $@
 
 # Which of the two is built is known to few files, made again when that changes.
-KNOW_CUDA := $(addprefix $(BUILD)/,tled/run/executors.o tests/unit/test_tled_cuda.o msds/run/msds_executors.o tests/unit/test_msds_cuda.o)
+KNOW_CUDA := $(addprefix $(BUILD)/,tled/loop/executors.o tests/unit/test_tled_cuda.o msds/run/msds_executors.o tests/unit/test_msds_cuda.o)
 $(BUILD)/cuda-$(CUDA):
 	@mkdir -p $(@D)
 	@rm -f $(BUILD)/cuda-yes $(BUILD)/cuda-no
@@ -156,7 +156,7 @@ objects = $(foreach file,$(1),$(addprefix $(BUILD)/$(basename $(file)),$(or $(pa
 VOXELISE_SRC := $(wildcard voxelise/*.c voxelise/surfaces/*.c)
 ATTACH_SRC := $(wildcard attach/*.c attach/shape/*.c)
 BIND_MODULES := $(filter-out bind/bind.c bind/sinew-deform.c,$(wildcard bind/*.c))
-TLED_SRC := $(wildcard tled/muscle/*.c tled/problem/*.c tled/contact/*.c tled/cpu/*.c tled/coarse/*.c tled/run/*.c)
+TLED_SRC := $(wildcard tled/muscle/*.c tled/problem/*.c tled/contact/*.c tled/cpu/*.c tled/coarse/*.c tled/loop/*.c tled/run/*.c)
 MSDS_MESH_SRC := $(wildcard msds/mesh/*.c)
 MSDS_RUN_SRC := $(wildcard msds/problem/*.c msds/cpu/*.c msds/tangent/*.c msds/run/*.c)
 IMPORT_SRC := $(wildcard slice/import/*.c) slice/import/dicom_file.cc

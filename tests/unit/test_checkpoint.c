@@ -6,7 +6,7 @@
 #include "tled_bench.h"
 
 #include "base/checksum.h"
-#include "tled/run/checkpoint.h"
+#include "tled/loop/checkpoint.h"
 
 #include <sys/stat.h>
 #include <unistd.h>

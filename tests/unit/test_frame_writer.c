@@ -2,7 +2,7 @@
  * and what was sound before something went wrong is written all the same.
  */
 // needs: tled/*/*.c
-#include "tled/run/frame_writer.h"
+#include "tled/loop/frame_writer.h"
 
 #include "tap.h"
 

@@ -13,7 +13,7 @@
 #include "tled_history.h"
 
 #include "base/checksum.h"
-#include "tled/run/checkpoint.h"
+#include "tled/loop/checkpoint.h"
 
 #include <unistd.h>
 

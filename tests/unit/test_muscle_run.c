@@ -3,7 +3,7 @@
  * need of an executor; and those in series with springs: whether a state is all that they have, and where they begin.
  */
 // needs: tled/*/*.c
-#include "tled/run/account.h"
+#include "tled/loop/account.h"
 
 #include "tled_bench.h"
 

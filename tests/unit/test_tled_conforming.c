@@ -3,9 +3,9 @@
  * step bounds the largest frequency. */
 // needs: tled/*/*.c
 #include "tled/cpu/cpu_pass.h"
+#include "tled/loop/monitor.h"
 #include "tled/problem/conforming_step.h"
 #include "tled/problem/deformed.h"
-#include "tled/run/monitor.h"
 
 #include "form_tried.h"
 #include "tap.h"

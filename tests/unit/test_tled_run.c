@@ -2,7 +2,7 @@
  * two, muscles at full contraction, steps that are too large, and the ends of runs.
  */
 // needs: tled/*/*.c
-#include "tled/run/timeline.h"
+#include "tled/loop/timeline.h"
 #include "tled_bench.h"
 
 #include <time.h>

@@ -7,11 +7,11 @@
 #include "tled/contact/self_contact.h"
 #include "tled/contact/sliding.h"
 #include "tled/cpu/cpu.h"
+#include "tled/loop/relax.h"
+#include "tled/loop/run.h"
 #include "tled/problem/collider.h"
 #include "tled/problem/step.h"
 #include "tled/problem/support.h"
-#include "tled/run/relax.h"
-#include "tled/run/run.h"
 
 #include "tap.h"
 #include "tled_block.h"

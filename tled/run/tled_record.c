@@ -4,7 +4,7 @@
 #include "base/num.h"
 #include "cli/tool.h"
 #include "model/hourglass_text.h"
-#include "tled/run/fingerprint.h"
+#include "tled/loop/fingerprint.h"
 #include "tled/run/tled_live.h"
 
 #include <stdarg.h>

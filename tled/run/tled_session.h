@@ -9,13 +9,13 @@
 #include "results/results.h"
 #include "tled/contact/self_contact.h"
 #include "tled/contact/sliding.h"
+#include "tled/loop/checkpoint.h"
+#include "tled/loop/folds.h"
+#include "tled/loop/relax.h"
+#include "tled/loop/run.h"
 #include "tled/problem/collider.h"
 #include "tled/problem/followers.h"
 #include "tled/problem/support.h"
-#include "tled/run/checkpoint.h"
-#include "tled/run/folds.h"
-#include "tled/run/relax.h"
-#include "tled/run/run.h"
 
 typedef struct session {
     const tool *t;

@@ -1,8 +1,8 @@
 #include "tled/run/tled_words.h"
 
+#include "tled/loop/timeline.h"
 #include "tled/problem/cut.h"
 #include "tled/problem/films.h"
-#include "tled/run/timeline.h"
 #include "tled/run/tled_live.h"
 
 #include <math.h>

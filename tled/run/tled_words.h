@@ -3,7 +3,7 @@
 #ifndef SINEW_TLED_WORDS_H
 #define SINEW_TLED_WORDS_H
 
-#include "tled/run/coarse_start.h"
+#include "tled/loop/coarse_start.h"
 #include "tled/run/options.h"
 #include "tled/run/tled_session.h"
 

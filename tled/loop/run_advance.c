@@ -1,5 +1,5 @@
-#include "tled/run/run_parts.h"
-#include "tled/run/timeline.h"
+#include "tled/loop/run_parts.h"
+#include "tled/loop/timeline.h"
 
 #include <math.h>
 #include <stdio.h>

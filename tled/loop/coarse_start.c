@@ -1,13 +1,13 @@
-#include "tled/run/coarse_start.h"
+#include "tled/loop/coarse_start.h"
 
 #include "base/mem.h"
 #include "tled/coarse/coarse.h"
+#include "tled/loop/timeline.h"
 #include "tled/problem/collider.h"
 #include "tled/problem/followers.h"
 #include "tled/problem/loads.h"
 #include "tled/problem/step.h"
 #include "tled/problem/support.h"
-#include "tled/run/timeline.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,4 +1,4 @@
-#include "tled/run/frame_writer.h"
+#include "tled/loop/frame_writer.h"
 
 #include "base/mem.h"
 #include "base/thread.h"

@@ -1,7 +1,7 @@
 #include "base/num.h"
 #include "tled/contact/self_contact.h"
-#include "tled/run/run_parts.h"
-#include "tled/run/timeline.h"
+#include "tled/loop/run_parts.h"
+#include "tled/loop/timeline.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,4 +1,4 @@
-#include "tled/run/relax.h"
+#include "tled/loop/relax.h"
 
 #include <math.h>
 

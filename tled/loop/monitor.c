@@ -1,4 +1,4 @@
-#include "tled/run/monitor.h"
+#include "tled/loop/monitor.h"
 
 #include "tled/contact/sliding.h"
 #include "tled/problem/collider.h"

@@ -5,7 +5,7 @@
 #ifndef SINEW_COARSE_START_H
 #define SINEW_COARSE_START_H
 
-#include "tled/run/run.h"
+#include "tled/loop/run.h"
 
 typedef struct coarse_told {
     int models;              /* that came to rest, but for those that did without their own coarser one */

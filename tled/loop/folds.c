@@ -1,4 +1,4 @@
-#include "tled/run/folds.h"
+#include "tled/loop/folds.h"
 
 #include "base/mem.h"
 #include "base/num.h"

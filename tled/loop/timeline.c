@@ -1,4 +1,4 @@
-#include "tled/run/timeline.h"
+#include "tled/loop/timeline.h"
 
 #include <math.h>
 

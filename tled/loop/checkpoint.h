@@ -10,8 +10,8 @@
 #ifndef SINEW_CHECKPOINT_H
 #define SINEW_CHECKPOINT_H
 
-#include "tled/run/fingerprint.h"
-#include "tled/run/run.h"
+#include "tled/loop/fingerprint.h"
+#include "tled/loop/run.h"
 
 typedef struct checkpoint checkpoint;
 

@@ -7,9 +7,9 @@
 #ifndef SINEW_ACCOUNT_H
 #define SINEW_ACCOUNT_H
 
+#include "tled/loop/strained.h"
 #include "tled/problem/bodies.h"
 #include "tled/problem/tled_executor.h"
-#include "tled/run/strained.h"
 
 typedef struct account_sums {
     double time;     /* s */

@@ -1,10 +1,10 @@
-#include "tled/run/run.h"
+#include "tled/loop/run.h"
 
 #include "base/clock.h"
+#include "tled/loop/run_parts.h"
+#include "tled/loop/timeline.h"
 #include "tled/problem/collider.h"
 #include "tled/problem/step.h"
-#include "tled/run/run_parts.h"
-#include "tled/run/timeline.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-#include "tled/run/log.h"
+#include "tled/loop/log.h"
 
 #include "base/chars.h"
 #include "base/clock.h"

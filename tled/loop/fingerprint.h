@@ -9,8 +9,8 @@
 #include "model/model.h"
 #include "tled/contact/self_contact.h"
 #include "tled/contact/sliding.h"
+#include "tled/loop/run.h"
 #include "tled/problem/collider.h"
-#include "tled/run/run.h"
 
 typedef struct fingerprint_part {
     char *name; /* "array element.node", "script", ...; owned */

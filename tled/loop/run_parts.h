@@ -4,7 +4,7 @@
 #ifndef SINEW_RUN_PARTS_H
 #define SINEW_RUN_PARTS_H
 
-#include "tled/run/run.h"
+#include "tled/loop/run.h"
 
 enum { CUTS_MAX = 10 }; /* a step cut 2^10 times is no step */
 

@@ -17,10 +17,10 @@
 #ifndef SINEW_RUN_H
 #define SINEW_RUN_H
 
+#include "tled/loop/frame_writer.h"
+#include "tled/loop/log.h"
+#include "tled/loop/relax.h"
 #include "tled/problem/tled_executor.h"
-#include "tled/run/frame_writer.h"
-#include "tled/run/log.h"
-#include "tled/run/relax.h"
 
 /* What a run has counted and decided so far, which a run that goes on takes over as it is. */
 typedef struct run_course {

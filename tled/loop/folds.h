@@ -6,7 +6,7 @@
 #define SINEW_FOLDS_H
 
 #include "model/model.h"
-#include "tled/run/strained.h"
+#include "tled/loop/strained.h"
 
 typedef struct folds {
     const tled_problem *p;

@@ -5,7 +5,7 @@
 #ifndef SINEW_RELAX_H
 #define SINEW_RELAX_H
 
-#include "tled/run/monitor.h"
+#include "tled/loop/monitor.h"
 
 /* The damping of a run that adapts it, in parts of the frequency; 2 is critical. From a distance of 1 to one of 1e-4 a
  * critically damped motion takes 11.8 of its radians, one with this damping at most 11.4. */

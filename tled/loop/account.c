@@ -1,4 +1,4 @@
-#include "tled/run/account.h"
+#include "tled/loop/account.h"
 
 #include "base/clock.h"
 #include "base/mem.h"

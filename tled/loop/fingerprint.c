@@ -1,4 +1,4 @@
-#include "tled/run/fingerprint.h"
+#include "tled/loop/fingerprint.h"
 
 #include "base/chars.h"
 #include "base/checksum.h"

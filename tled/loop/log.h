@@ -10,8 +10,8 @@
 #include "live/growing.h"
 #include "model/model.h"
 #include "results/results.h"
+#include "tled/loop/account.h"
 #include "tled/problem/script.h"
-#include "tled/run/account.h"
 
 /* What a row says besides what the account knows. */
 typedef struct log_row {

@@ -1,4 +1,4 @@
-#include "tled/run/strained.h"
+#include "tled/loop/strained.h"
 
 #include <math.h>
 

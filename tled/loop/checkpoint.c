@@ -1,4 +1,4 @@
-#include "tled/run/checkpoint.h"
+#include "tled/loop/checkpoint.h"
 
 #include "base/mem.h"
 #include "base/path.h"
