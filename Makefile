@@ -85,12 +85,14 @@ endif
 # As on the CPU: numbers of single precision that are too small to be normal are zero.
 $(BUILD)/tled/cuda/cuda_single.o: NVCC_FLAGS += -ftz=true
 $(BUILD)/msds/cuda/cuda_%.o: NVCC_FLAGS += -ftz=true
-# The results of these two files need not have the bytes of the processor, so they may fuse; the march is for cards from sm_90 on.
-$(BUILD)/tled/cuda/cuda_look.o: CUDA_FUSED = true
-$(BUILD)/tled/cuda/cuda_march.o: NVCC_FLAGS += -ftz=true
-$(BUILD)/tled/cuda/cuda_march.o: CUDA_FUSED = true
-$(BUILD)/tled/cuda/cuda_march.o: CUDA_ARCH = -gencode arch=compute_90,code=sm_90 $(MARCH_ARCH)
+# The results of these need not have the bytes of the processor, so they may fuse; the march is for cards from sm_90 on, and is compiled
+# for each precision.
+MARCH_OBJ := $(addprefix $(BUILD)/tled/cuda/,cuda_march.o cuda_march_double.o)
+$(BUILD)/tled/cuda/cuda_look.o $(MARCH_OBJ): CUDA_FUSED = true
+$(MARCH_OBJ): NVCC_FLAGS += -ftz=true
+$(MARCH_OBJ): CUDA_ARCH = -gencode arch=compute_90,code=sm_90 $(MARCH_ARCH)
 CUDA_SRC := $(wildcard common/solve/*.cu tled/cuda/*.cu msds/cuda/*.cu)
+CUDA_OBJ := $(CUDA_SRC:%.cu=$(BUILD)/%.o) $(BUILD)/tled/cuda/cuda_march_double.o
 $(if $(filter-out yes no,$(CUDA)),$(error CUDA is '$(CUDA)'; expected yes or no))
 ifeq ($(CUDA),yes)
 LIB_CUDA := $(BUILD)/libsinew-cuda.a
@@ -99,15 +101,20 @@ endif
 
 # What only cards use, in C, is in it too.
 CUDA_ONLY := $(wildcard tled/tiles/*.c tled/cuda/*.c msds/cuda/*.c)
-$(BUILD)/libsinew-cuda.a: $(CUDA_SRC:%.cu=$(BUILD)/%.o) $(CUDA_ONLY:%.c=$(BUILD)/%.o)
+$(BUILD)/libsinew-cuda.a: $(CUDA_OBJ) $(CUDA_ONLY:%.c=$(BUILD)/%.o)
 	@rm -f $@
 	@ar rcs $@ $^
 
-$(BUILD)/%.o: %.cu $(BUILD)/quick-$(CUDA_QUICK)
+define nvcc
 	$(if $(NVCC),,$(error there is no nvcc for CUDA=yes; expected NVCC with its path, or CUDA=no))
 	@mkdir -p $(@D)
-	$(call run,NVCC $<,$(NVCC) $(NVCC_FLAGS) -Icommon -I. -MMD -MP -MF $(@:.o=.d) -c -o $@ $<)
+	$(call run,NVCC $<$1,$(NVCC) $(NVCC_FLAGS)$1 -Icommon -I. -MMD -MP -MF $(@:.o=.d) -c -o $@ $<)
 	@objcopy -w -N 'tmpxft_*' $@ # the name of a temporary file: the same source is to give the same bytes
+endef
+$(BUILD)/%.o: %.cu $(BUILD)/quick-$(CUDA_QUICK)
+	$(nvcc)
+$(BUILD)/%_double.o: %.cu $(BUILD)/quick-$(CUDA_QUICK)
+	$(call nvcc, -DMARCH_DOUBLE)
 
 $(BUILD)/quick-$(CUDA_QUICK):
 	@mkdir -p $(@D)

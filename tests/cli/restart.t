@@ -109,7 +109,7 @@ if run -d cuda -n 1 >/dev/null 2>"$T/err"; then
     done
     model=$T/block.sinew
     same "CUDA, a script" -d cuda --script "$T/script" -t 0.4 --every 0.002
-    # More than what stays on a card: in single precision it marches, in double it goes brick by brick, as test_tled_cuda sees.
+    # More than what stays on a card: it marches.
     awk -v nx=60 -v ny=60 -v nz=54 -v h=0.0025 -v held=low -v muscle=1 -f tests/cli/block.awk >"$T/large.sinew"
     memory=$fast
     model=$T/large.sinew fast=$T c=$T/state # more than /dev/shm may have

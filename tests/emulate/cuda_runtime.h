@@ -33,6 +33,9 @@ struct alignas(16) uint4 {
 struct alignas(16) float4 {
     float x, y, z, w;
 };
+struct alignas(16) double2 {
+    double x, y;
+};
 struct float3 {
     float x, y, z;
 };
@@ -42,6 +45,11 @@ struct dim3 {
     {
     }
 };
+
+static inline double2 make_double2(double x, double y)
+{
+    return {x, y};
+}
 
 static inline float4 make_float4(float x, float y, float z, float w)
 {
@@ -128,6 +136,7 @@ enum cudaDeviceAttr {
     cudaDevAttrComputeCapabilityMinor,
     cudaDevAttrMultiProcessorCount,
     cudaDevAttrCooperativeLaunch,
+    cudaDevAttrMaxSharedMemoryPerBlockOptin,
     cudaDevAttrMaxPersistingL2CacheSize /* none */
 };
 enum cudaLimit { cudaLimitPersistingL2CacheSize };

@@ -3,7 +3,7 @@
 
 EMULATE_CXX ?= $(if $(filter x86_64,$(shell uname -m)),$(shell command -v g++))
 EMULATE_CU := $(addprefix tled/cuda/,cuda_march cuda_single cuda_double cuda_look) common/solve/card $(addprefix tests/emulate/,wrong any_single any_double)
-EMULATE_OBJ := $(addprefix $(BUILD)/emulate/,$(addsuffix .o,$(EMULATE_CU) fibres shadow telling streams tled/cuda/march)) \
+EMULATE_OBJ := $(addprefix $(BUILD)/emulate/,$(addsuffix .o,$(EMULATE_CU) tled/cuda/cuda_march_double fibres shadow telling streams tled/cuda/march)) \
 	$(addprefix $(BUILD)/tled/cuda/,march_units.o march_cells.o march_near.o march_tips.o) \
 	$(addprefix $(BUILD)/tled/tiles/,bricks.o places.o lattice_sheet.o tile_parts.o tile_split.o tiles.o)
 EMULATE_FLAGS = -std=c++17 -g -Wall $(WERROR) -Itests/emulate $(CPPFLAGS) -MMD -MP
@@ -13,8 +13,12 @@ EMULATE_CU_FLAGS = -O1 -g1 -mavx2 -mfma -fsanitize=thread,undefined -fno-sanitiz
 $(BUILD)/emulate/%.o: %.cu
 	@mkdir -p $(@D)
 	$(call run,EMULATE $<,$(EMULATE_CXX) $(EMULATE_FLAGS) $(EMULATE_CU_FLAGS) -ffp-contract=$(EMULATE_CONTRACT) -x c++ -c -o $@ $<)
+$(BUILD)/emulate/%_double.o: EMULATE_CU_FLAGS += -DMARCH_DOUBLE
+$(BUILD)/emulate/%_double.o: %.cu
+	@mkdir -p $(@D)
+	$(call run,EMULATE $<,$(EMULATE_CXX) $(EMULATE_FLAGS) $(EMULATE_CU_FLAGS) -ffp-contract=$(EMULATE_CONTRACT) -x c++ -c -o $@ $<)
 EMULATE_CONTRACT = off
-$(BUILD)/emulate/tled/cuda/cuda_march.o $(BUILD)/emulate/tled/cuda/cuda_look.o: EMULATE_CONTRACT = fast
+$(addprefix $(BUILD)/emulate/tled/cuda/,cuda_march.o cuda_march_double.o cuda_look.o): EMULATE_CONTRACT = fast
 # However small, a frame has its own memory on the card.
 $(addprefix $(BUILD)/emulate/,$(patsubst %,%.o,tled/cuda/cuda_single tled/cuda/cuda_double tests/emulate/any_single tests/emulate/any_double)): EMULATE_CU_FLAGS += -DFRAME_DIRECT=0
 

@@ -347,6 +347,8 @@ cudaError_t cudaDeviceGetAttribute(int *value, cudaDeviceAttr which, int)
         *value = card.processors;
     else if (which == cudaDevAttrCooperativeLaunch)
         *value = card.together;
+    else if (which == cudaDevAttrMaxSharedMemoryPerBlockOptin)
+        *value = SHARED_MOST;
     return cudaSuccess;
 }
 

@@ -409,6 +409,30 @@ void shared_store(uint32_t at, float x, float y, float z)
     *(float4 *)touch_shared(at, sizeof(float4), true) = {x, y, z, __uint_as_float(lot(~0u))};
 }
 
+double2 shared_pair(uint32_t at)
+{
+    HERE();
+    return *(const double2 *)touch_shared(at, sizeof(double2), false);
+}
+
+void shared_pair_store(uint32_t at, double x, double y)
+{
+    HERE();
+    *(double2 *)touch_shared(at, sizeof(double2), true) = {x, y};
+}
+
+double shared_double(uint32_t at)
+{
+    HERE();
+    return *(const double *)touch_shared(at, sizeof(double), false);
+}
+
+void shared_double_store(uint32_t at, double x)
+{
+    HERE();
+    *(double *)touch_shared(at, sizeof(double), true) = x;
+}
+
 /* ---- copies: each is there as early or as late as may be, by lot. One of what changes meanwhile is none of the
  * thread's business before it is read. */
 

@@ -65,6 +65,8 @@ static void test_marches(int64_t steps)
     /* The first two have nothing that others have not. */
     for (size_t i = all_of_it ? 0 : 2; i < sizeof all / sizeof *all; i++)
         try(&all[i], &marching, &tled_cuda_single, &tled_cpu_double, steps, 1e-5);
+    for (size_t i = all_of_it ? 0 : 3; i < sizeof all / sizeof *all; i++)
+        try_marched(&all[i], steps);
 }
 
 /* Plates and rods of 1 to 3 elements along every axis, or of one of these numbers. */
@@ -85,6 +87,8 @@ static void test_thin(int64_t steps)
             try(&plate, &marching, &tled_cuda_single, &tled_cpu_double, steps, 1e-5);
             snprintf(name, sizeof name, "a rod of %d along %c", n, 'x' + axis);
             try(&rod, &marching, &tled_cuda_single, &tled_cpu_double, steps, 1e-5);
+            if (all_of_it || axis == 2)
+                try_marched(&plate, steps);
         }
 }
 
@@ -126,6 +130,7 @@ static void test_slits(int64_t steps)
         if (i == 5) {
             try(&bricks, &plain, &tled_cuda_double, &tled_cpu_double, steps, 0);
             try(&stay, &staying, &tled_cuda_double, &tled_cpu_double, steps, 0);
+            try_marched(&walk, steps);
             put_in(&plain, 4, 4);
             test_look(&lump, true, steps, &tled_cuda_single, "a look at slits in bricks", 1e-6);
             put_in(&marching, 3, 2);
@@ -141,6 +146,7 @@ static void test_slits(int64_t steps)
     }
     const trial muscles = {"crossing slits in muscles", mixed_of(small), .5, false, {0}, false};
     try(&muscles, &marching, &tled_cuda_single, &tled_cpu_double, steps, 1e-5);
+    try_marched(&muscles, steps);
     in_slit = NULL;
 }
 
@@ -169,6 +175,8 @@ static void test_laws_marched(int64_t steps)
         printf("# form %d, %s\n", (int)in_form, in_fibres ? in_fibres->name : "no fibres");
         try(&alone, &marching, &tled_cuda_single, &tled_cpu_double, steps, 1e-5);
         try(&special, &marching, &tled_cuda_single, &tled_cpu_double, steps, 1e-5);
+        if (!in_fibres)
+            try_marched(all_of_it || i ? &special : &alone, steps);
         if (!in_fibres)
             try(&mixed, &marching, &tled_cuda_single, &tled_cpu_double, steps, 1e-5);
         in_slit = &slits[3];
@@ -357,6 +365,7 @@ static void test_isotropic(int64_t steps)
     const trial bricks = {"isotropic control in bricks", mixed_of(muscle), .5, false, {0}, false};
     in_control = ISOTROPIC(.0075);
     try(&marches, &marching, &tled_cuda_single, &tled_cpu_double, steps, 1e-5);
+    try_marched(&marches, steps);
     if (all_of_it)
         try(&mixed, &marching, &tled_cuda_single, &tled_cpu_double, steps, 1e-5);
     try(&bricks, &plain, &tled_cuda_single, &tled_cpu_single, steps, 0);
@@ -389,6 +398,7 @@ static void test_looks(int64_t steps)
     ok(once.frequency_element >= 0 && !memcmp(&once, &again, sizeof once), "a look in bricks: the same by other lots");
     put_in(&marching, 3, 2);
     test_look(&small, false, steps, &tled_cuda_single, "a look where it marches", 1e-6);
+    test_look(&small, false, steps, &tled_cuda_double, "a look where it marches in double precision", 1e-10);
     ok(bench_look_at_rest(&lump, &tled_cuda_single) == 1,
        "a look at rest, with unlike sides, finds the stable step at rest");
     const block mixed = mixed_of(small);

@@ -88,7 +88,7 @@ static bool has_muscle(const seen *s, const march_cell *cell, int *at, const flo
     const int k = (*at)++;
     const march_muscle *muscle = &cell->muscle[k];
     bool good = (muscle->curve & ~MARCH_SECOND) == (int32_t)v->contract &&
-                (k ? cell->second_peak : cell->peak) == (float)(share * v->peak);
+                (k ? cell->second_peak : cell->peak) == share * v->peak;
     for (int a = 0; a < 3; a++)
         good &= muscle->fibre[a] == fibre[s->m->axis[a]];
     return good;
@@ -120,9 +120,8 @@ static void see_special(seen *s, int64_t layer, int i, int j, int32_t element)
     int muscles = 0;
     s->special++;
     s->wrong += !has_cut(s, (int32_t)(cell - s->m->cell), element);
-    s->wrong +=
-        cell->mu != (float)(share * law.mu) || cell->bulk != (float)(share * law.bulk) ||
-        cell->second != (p->control.kind == HOURGLASS_ISOTROPIC ? (float)(share * law.hourglass[HOURGLASS_K]) : 0);
+    s->wrong += cell->mu != share * law.mu || cell->bulk != share * law.bulk ||
+                cell->second != (p->control.kind == HOURGLASS_ISOTROPIC ? share * law.hourglass[HOURGLASS_K] : 0);
     s->wrong += !has_muscle(s, cell, &muscles, p->fibre ? p->fibre + 3 * (int64_t)element : NULL,
                             p->element_volume[element], share * (1 - other));
     s->wrong += mix >= 0 && !has_muscle(s, cell, &muscles, p->mixfibre ? p->mixfibre + 3 * (int64_t)element : NULL, mix,
@@ -141,9 +140,8 @@ static bool is_plain(const seen *s, int32_t element)
     const tled_law law = tled_law_of(p, element);
     const tled_law *plain = &p->volume[s->m->plain].law;
     const int32_t mix = tled_mix(p, element);
-    return tled_fraction(p, element) == 1 && !tled_cut(p, element) && (float)law.mu == (float)plain->mu &&
-           (float)law.bulk == (float)plain->bulk &&
-           (float)law.hourglass[HOURGLASS_K] == (float)plain->hourglass[HOURGLASS_K] &&
+    return tled_fraction(p, element) == 1 && !tled_cut(p, element) && law.mu == plain->mu && law.bulk == plain->bulk &&
+           law.hourglass[HOURGLASS_K] == plain->hourglass[HOURGLASS_K] &&
            !(p->fibre && p->volume[p->element_volume[element]].contract >= 0) &&
            !(p->mixfibre && mix >= 0 && p->volume[mix].contract >= 0);
 }

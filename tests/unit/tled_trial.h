@@ -146,6 +146,12 @@ static inline void try(const trial *t, const emulated_card *card, const tled_exe
     answer_free(&there);
 }
 
+/* Where it marches: nearly the numbers of the CPU in double precision, as operations are fused and sums are others. */
+static inline void try_marched(const trial *t, int64_t steps)
+{
+    try(t, &marching, &tled_cuda_double, &tled_cpu_double, steps, 1e-12);
+}
+
 static inline block mixed_of(block what)
 {
     what.fraction = -1;

@@ -33,6 +33,7 @@ static inline void test_sliding(int64_t steps)
     try(&moved, &staying, &tled_cuda_double, &tled_cpu_double, steps, 0);
     try(&rests, &plain, &tled_cuda_single, &tled_cpu_single, steps, 0);
     try(&muscles, &marching, &tled_cuda_single, &tled_cpu_double, steps, 1e-5);
+    try_marched(&muscles, steps);
     in_slit = &slits[3];
     try(&moved, &marching, &tled_cuda_single, &tled_cpu_double, steps, 1e-5);
     in_slit = NULL;
@@ -64,6 +65,7 @@ static inline void test_pressing(int64_t steps)
     try(&pressed, &plain, &tled_cuda_double, &tled_cpu_double, steps, 1e-13);
     try(&rests, &staying, &tled_cuda_single, &tled_cpu_single, steps, 1e-5);
     try(&pressed, &marching, &tled_cuda_single, &tled_cpu_double, steps, 1e-5);
+    try_marched(&pressed, steps);
     in_pressing = &array;
     try(&muscles, &marching, &tled_cuda_single, &tled_cpu_double, steps, 1e-5);
     in_sliding = true;
@@ -92,6 +94,7 @@ static inline void test_touching(int64_t steps)
     test_matters(&without, &with, 1e-3, "skin matters");
     try(&closed, &plain, &tled_cuda_double, &tled_cpu_double, steps, 1e-9);
     try(&closed, &marching, &tled_cuda_single, &tled_cpu_double, steps, 1e-5);
+    try(&closed, &marching, &tled_cuda_double, &tled_cpu_double, steps, 1e-9);
     in_touching = &blended;
     try(&moved, &staying, &tled_cuda_double, &tled_cpu_double, 1, 1e-9);
     in_touching = &all;

@@ -58,12 +58,16 @@ static inline void test_cuts_marched(int64_t steps)
     const trial alone = {"cut, a law, marched", small, .5, false, {0}, false};
     try(&scripted, &marching, &tled_cuda_single, &tled_cpu_double, steps, 1e-5);
     try(&muscles, &marching, &tled_cuda_single, &tled_cpu_double, steps, 1e-5);
+    try_marched(&scripted, steps);
+    try_marched(&muscles, steps);
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
         in_form = all[i].of;
         in_fibres = all[i].fibres;
         printf("# form %d, %s\n", (int)in_form, in_fibres ? in_fibres->name : "no fibres");
         in_slit = i % 2 ? &slits[3] : NULL;
         try(&alone, &marching, &tled_cuda_single, &tled_cpu_double, steps, 1e-5);
+        if (!in_fibres && (all_of_it || i))
+            try_marched(&alone, steps);
     }
     in_slit = &slits[3];
     in_form = FORM_NEO_HOOKEAN;

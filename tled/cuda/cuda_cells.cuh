@@ -5,39 +5,42 @@
 #ifndef SINEW_CUDA_CELLS_CUH
 #define SINEW_CUDA_CELLS_CUH
 
-/* element.h before it, in single precision */
+/* element.h before it */
 #include "tled/cuda/cuda_march_laws.cuh"
 
 /* Forces of the cell below on a face; isotropic: on its xy, those are twice `hourglass` times the face's. */
 template <march_control K> struct push {
-    float mean[3], x[3], y[3], xy[3];
+    real mean[3], x[3], y[3], xy[3];
 };
 template <> struct push<MARCH_ISOTROPIC> {
-    float mean[3], x[3], y[3], hourglass;
+    real mean[3], x[3], y[3], hourglass;
 };
 
-/* x^(-5/3), to 4e-7 of it. */
-static __device__ __forceinline__ float power(float x)
+/* x^(-5/3), in single precision to 4e-7 of it. */
+static __device__ __forceinline__ real power(real x)
 {
-    return near_exp2(near_log2(x) * (-5.f / 3));
+    if constexpr (SINGLE)
+        return near_exp2(near_log2((float)x) * (-5.f / 3));
+    const real root = near_root_of_inverse((double)x), square = root * root;
+    return square * root * square;
 }
 
 /* The neo-Hookean form, in fewer operations. With s = mu J^-5/3, d = J - 1, e = tr(C - I), G
  * = cof F - I, all of it first order in H:
  *     P = (s (d - e/3) + K d) I + s J H + (K d - s (1 + e/3)) G.
  * No cell: mu and bulk are 0, and J is not looked at. */
-static __device__ __forceinline__ element_tensor stress(element_tensor h, float mu, float bulk, bool is)
+static __device__ __forceinline__ element_tensor stress(element_tensor h, real mu, real bulk, bool is)
 {
     const element_tensor m = {h.yy * h.zz - h.yz * h.zy, h.yz * h.zx - h.yx * h.zz, h.yx * h.zy - h.yy * h.zx,
                               h.xz * h.zy - h.xy * h.zz, h.xx * h.zz - h.xz * h.zx, h.xy * h.zx - h.xx * h.zy,
                               h.xy * h.yz - h.xz * h.yy, h.xz * h.yx - h.xx * h.yz, h.xx * h.yy - h.xy * h.yx};
-    const float trace = h.xx + h.yy + h.zz;
-    const float dilation = trace + ((m.xx + m.yy + m.zz) + (h.xx * m.xx + h.xy * m.xy + h.xz * m.xz));
-    const float third = (2 * trace + (h.xx * h.xx + h.xy * h.xy + h.xz * h.xz + h.yx * h.yx + h.yy * h.yy +
-                                      h.yz * h.yz + h.zx * h.zx + h.zy * h.zy + h.zz * h.zz)) *
-                        (1.f / 3);
-    const float j = is ? 1 + dilation : 1, scale = mu * power(j), pressure = bulk * dilation;
-    const float all = pressure + scale * (dilation - third), own = scale * j, g = pressure - (scale + scale * third);
+    const real trace = h.xx + h.yy + h.zz;
+    const real dilation = trace + ((m.xx + m.yy + m.zz) + (h.xx * m.xx + h.xy * m.xy + h.xz * m.xz));
+    const real third = (2 * trace + (h.xx * h.xx + h.xy * h.xy + h.xz * h.xz + h.yx * h.yx + h.yy * h.yy + h.yz * h.yz +
+                                     h.zx * h.zx + h.zy * h.zy + h.zz * h.zz)) *
+                       ((real)1 / 3);
+    const real j = is ? 1 + dilation : 1, scale = mu * power(j), pressure = bulk * dilation;
+    const real all = pressure + scale * (dilation - third), own = scale * j, g = pressure - (scale + scale * third);
     const element_tensor p = {all + own * h.xx + g * (trace - h.xx + m.xx),
                               own * h.xy + g * (m.xy - h.yx),
                               own * h.xz + g * (m.xz - h.zx),
@@ -50,7 +53,8 @@ static __device__ __forceinline__ element_tensor stress(element_tensor h, float 
     return p;
 }
 
-static __device__ __forceinline__ element_tensor gradient_of(const cuda_march &m, const face &low, const face &high)
+static __device__ __forceinline__ element_tensor gradient_of(const cuda_march<real> &m, const face &low,
+                                                             const face &high)
 {
     const element_tensor h = {(low.x[0] + high.x[0]) * m.slope[0],       (low.y[0] + high.y[0]) * m.slope[1],
                               (high.mean[0] - low.mean[0]) * m.slope[2], (low.x[1] + high.x[1]) * m.slope[0],
@@ -61,11 +65,11 @@ static __device__ __forceinline__ element_tensor gradient_of(const cuda_march &m
 }
 
 /* Of a cell that may be cut; cut: NULL: it is not. */
-static __device__ __forceinline__ element_tensor gradient_by(const cuda_march &m, const march_cut *cut, const face &low,
-                                                             const face &high)
+static __device__ __forceinline__ element_tensor gradient_by(const cuda_march<real> &m, const march_cut *cut,
+                                                             const face &low, const face &high)
 {
     element_tensor h = gradient_of(m, low, high);
-    float more[3][3] = {};
+    real more[3][3] = {};
     if (!cut)
         return h;
     add_cut(*cut, low, high, more);
@@ -76,17 +80,17 @@ static __device__ __forceinline__ element_tensor gradient_by(const cuda_march &m
 }
 
 /* The forces of a cell: `sum` gets those on its lower face, with `below`, which becomes those on its upper face. */
-static __device__ __forceinline__ void cell_forces(const cuda_march &m, float mu, float bulk, float hourglass, bool is,
-                                                   const face &low, const face &high, face *sum,
+static __device__ __forceinline__ void cell_forces(const cuda_march<real> &m, real mu, real bulk, real hourglass,
+                                                   bool is, const face &low, const face &high, face *sum,
                                                    push<MARCH_ISOTROPIC> *below)
 {
     const element_tensor s = stress(gradient_of(m, low, high), mu, bulk, is);
-    const float px[3] = {s.xx, s.yx, s.zx}, py[3] = {s.xy, s.yy, s.zy}, pz[3] = {s.xz, s.yz, s.zz};
-    const float both = 2 * (below->hourglass + hourglass);
+    const real px[3] = {s.xx, s.yx, s.zx}, py[3] = {s.xy, s.yy, s.zy}, pz[3] = {s.xz, s.yz, s.zz};
+    const real both = 2 * (below->hourglass + hourglass);
 #pragma unroll
     for (int a = 0; a < 3; a++) {
-        const float zx = hourglass * (high.x[a] - low.x[a]), yz = hourglass * (high.y[a] - low.y[a]);
-        const float z = pz[a] * m.area[2];
+        const real zx = hourglass * (high.x[a] - low.x[a]), yz = hourglass * (high.y[a] - low.y[a]);
+        const real z = pz[a] * m.area[2];
         sum->mean[a] = below->mean[a] - z;
         sum->x[a] = (below->x[a] - zx) + px[a] * m.area[0];
         sum->y[a] = (below->y[a] - yz) + py[a] * m.area[1];
@@ -99,7 +103,7 @@ static __device__ __forceinline__ void cell_forces(const cuda_march &m, float mu
 }
 
 /* Strains of a mode. */
-static __device__ __forceinline__ void strains_of(const float inverse[3][3], const float mode[3], float to[3])
+static __device__ __forceinline__ void strains_of(const real inverse[3][3], const real mode[3], real to[3])
 {
 #pragma unroll
     for (int i = 0; i < 3; i++)
@@ -107,8 +111,8 @@ static __device__ __forceinline__ void strains_of(const float inverse[3][3], con
 }
 
 /* Forces on a mode from its stresses; p gets what it has of them. */
-static __device__ __forceinline__ void mode_forces(const float inverse[3][3], const float stress[3],
-                                                   const float strain[3], float to[3], float p[3][3])
+static __device__ __forceinline__ void mode_forces(const real inverse[3][3], const real stress[3], const real strain[3],
+                                                   real to[3], real p[3][3])
 {
 #pragma unroll
     for (int a = 0; a < 3; a++) {
@@ -122,27 +126,27 @@ static __device__ __forceinline__ void mode_forces(const float inverse[3][3], co
 /* Of the modes of a cell, of its faces' xy, whose sum and difference are its modes xy and xyz, of yz and zx: forces, or
  * strains, or stresses. */
 typedef struct modes {
-    float low[3], high[3], yz[3], zx[3];
+    real low[3], high[3], yz[3], zx[3];
 } modes;
 
 /* k.own; of a cube it is 1 times the torsion. */
-template <march_control K> static __device__ __forceinline__ float own_of(const march_hold &k, int i)
+template <march_control K> static __device__ __forceinline__ real own_of(const march_hold<real> &k, int i)
 {
     return march_kind<K>::CUBES ? k.torsion : k.own[i];
 }
 
 /* k.bending; of a plain cell it is 1. */
-template <bool PLAIN> static __device__ __forceinline__ float bending_of(const march_hold &k)
+template <bool PLAIN> static __device__ __forceinline__ real bending_of(const march_hold<real> &k)
 {
     return PLAIN ? 1 : k.bending;
 }
 
 /* Strains e and stresses s of the modes. */
 template <march_control K, bool PLAIN>
-static __device__ __forceinline__ void stress_modes(const march_hold &k, const float inverse[3][3], const face &low,
-                                                    const face &high, modes *e, modes *s)
+static __device__ __forceinline__ void stress_modes(const march_hold<real> &k, const real inverse[3][3],
+                                                    const face &low, const face &high, modes *e, modes *s)
 {
-    float yz[3], zx[3], xy[3];
+    real yz[3], zx[3], xy[3];
 #pragma unroll
     for (int a = 0; a < 3; a++) {
         yz[a] = high.y[a] - low.y[a];
@@ -155,9 +159,9 @@ static __device__ __forceinline__ void stress_modes(const march_hold &k, const f
 #pragma unroll
     for (int i = 0; i < 3; i++)
         xy[i] = e->low[i] + e->high[i];
-    const float bending = bending_of<PLAIN>(k), twist = k.torsion * (e->yz[0] + e->zx[1] + xy[2]);
-    const float s_xy[3] = {bending * xy[0] + k.coupling * e->yz[2], bending * xy[1] + k.coupling * e->zx[2],
-                           own_of<K>(k, 2) * xy[2] + twist};
+    const real bending = bending_of<PLAIN>(k), twist = k.torsion * (e->yz[0] + e->zx[1] + xy[2]);
+    const real s_xy[3] = {bending * xy[0] + k.coupling * e->yz[2], bending * xy[1] + k.coupling * e->zx[2],
+                          own_of<K>(k, 2) * xy[2] + twist};
     s->yz[0] = own_of<K>(k, 0) * e->yz[0] + twist;
     s->yz[1] = bending * e->yz[1] + k.coupling * e->zx[0];
     s->yz[2] = bending * e->yz[2] + k.coupling * xy[0];
@@ -166,16 +170,16 @@ static __device__ __forceinline__ void stress_modes(const march_hold &k, const f
     s->zx[2] = bending * e->zx[2] + k.coupling * xy[1];
 #pragma unroll
     for (int i = 0; i < 3; i++) {
-        const float gap = e->high[i] - e->low[i];
+        const real gap = e->high[i] - e->low[i];
         s->low[i] = s_xy[i] - k.corner * gap;
         s->high[i] = s_xy[i] + k.corner * gap;
     }
 }
 
 /* Twice their energy. In this order a step takes .5 % less than by i alone. */
-static __device__ __forceinline__ float work_of(const modes &e, const modes &s)
+static __device__ __forceinline__ real work_of(const modes &e, const modes &s)
 {
-    float work = 0;
+    real work = 0;
 #pragma unroll
     for (int i = 0; i < 3; i++) {
         work += s.yz[i] * e.yz[i];
@@ -190,8 +194,8 @@ static __device__ __forceinline__ float work_of(const modes &e, const modes &s)
 }
 
 /* Forces on them; p gets what it has of them. */
-static __device__ __forceinline__ void force_modes(const float inverse[3][3], const modes &e, const modes &s, modes *f,
-                                                   float p[3][3])
+static __device__ __forceinline__ void force_modes(const real inverse[3][3], const modes &e, const modes &s, modes *f,
+                                                   real p[3][3])
 {
     mode_forces(inverse, s.low, e.low, f->low, p);
     mode_forces(inverse, s.high, e.high, f->high, p);
@@ -203,8 +207,8 @@ static __device__ __forceinline__ void force_modes(const float inverse[3][3], co
  * w0 t' dx/dF besides, which is the law's own stress with w0 t'/V more in place of f'. Leaves t F'^-T, by which
  * the modes' forces are t times what they are, in `inverse`. */
 template <march_control K>
-static __device__ __forceinline__ void follow(const cuda_march &m, const tissue<K> &of, const stretch &s, bool is,
-                                              float work, float inverse[3][3], float p[3][3])
+static __device__ __forceinline__ void follow(const cuda_march<real> &m, const tissue<K> &of, const stretch &s, bool is,
+                                              real work, real inverse[3][3], real p[3][3])
 {
     const bent b = bent_of(of.more, s);
     push_of<K>(m, of, (b.slope + work * b.slope_of_shear) * b.scale, s, is, p);
@@ -215,12 +219,12 @@ static __device__ __forceinline__ void follow(const cuda_march &m, const tissue<
 
 /* Adds what V P L, p[component][axis], pulls the modes of a cut cell with, the transpose of add_cut; a cell's mode xy
  * is the sum of its faces', xyz their difference. */
-static __device__ __forceinline__ void add_cut_forces(const march_cut &c, const float p[3][3], modes *f)
+static __device__ __forceinline__ void add_cut_forces(const march_cut &c, const real p[3][3], modes *f)
 {
 #pragma unroll
     for (int a = 0; a < 3; a++) {
-        const float xy = p[a][0] * c.y + p[a][1] * c.x;
-        const float xyz = p[a][0] * c.yz + p[a][1] * c.zx + p[a][2] * c.xy;
+        const real xy = p[a][0] * c.y + p[a][1] * c.x;
+        const real xyz = p[a][0] * c.yz + p[a][1] * c.zx + p[a][2] * c.xy;
         f->low[a] += xy - xyz;
         f->high[a] += xy + xyz;
         f->yz[a] += p[a][1] * c.z + p[a][2] * c.y;
@@ -230,10 +234,11 @@ static __device__ __forceinline__ void add_cut_forces(const march_cut &c, const 
 
 /* As cell_forces of isotropic control; PLAIN: the cell is; cut: of a cut cell; else NULL. */
 template <march_control K, bool PLAIN>
-static __device__ __forceinline__ void cell_forces(const cuda_march &m, const tissue<K> &of, bool is, const face &low,
-                                                   const face &high, const march_cut *cut, face *sum, push<K> *below)
+static __device__ __forceinline__ void cell_forces(const cuda_march<real> &m, const tissue<K> &of, bool is,
+                                                   const face &low, const face &high, const march_cut *cut, face *sum,
+                                                   push<K> *below)
 {
-    float inverse[3][3], p[3][3];
+    real inverse[3][3], p[3][3];
     modes strains, stresses, f;
     const stretch s = stretch_of<K>(m, is, low, high, cut);
     inverse_of<K>(m, s, inverse);
@@ -260,10 +265,10 @@ static __device__ __forceinline__ void cell_forces(const cuda_march &m, const ti
 
 /* Adds to the forces of a cut cell what a stress pulls its modes with; px, py, pz: its columns. */
 template <march_control K>
-static __device__ __forceinline__ void add_cut_tension(const cuda_march &m, const march_cut &c, const float px[3],
-                                                       const float py[3], const float pz[3], face *sum, push<K> *below)
+static __device__ __forceinline__ void add_cut_tension(const cuda_march<real> &m, const march_cut &c, const real px[3],
+                                                       const real py[3], const real pz[3], face *sum, push<K> *below)
 {
-    float p[3][3];
+    real p[3][3];
     modes f = {};
 #pragma unroll
     for (int a = 0; a < 3; a++)
@@ -282,11 +287,11 @@ static __device__ __forceinline__ void add_cut_tension(const cuda_march &m, cons
 
 /* Adds those of a muscle; h: the cell's gradient, tension: Pa; cut: of a cut cell; else NULL. */
 template <march_control K>
-static __device__ __forceinline__ void add_tension(const cuda_march &m, element_tensor h, element_fibre fibre,
+static __device__ __forceinline__ void add_tension(const cuda_march<real> &m, element_tensor h, element_fibre fibre,
                                                    const march_cut *cut, face *sum, push<K> *below)
 {
     const element_tensor s = element_active(h, fibre);
-    const float px[3] = {s.xx, s.yx, s.zx}, py[3] = {s.xy, s.yy, s.zy}, pz[3] = {s.xz, s.yz, s.zz};
+    const real px[3] = {s.xx, s.yx, s.zx}, py[3] = {s.xy, s.yy, s.zy}, pz[3] = {s.xz, s.yz, s.zz};
 #pragma unroll
     for (int a = 0; a < 3; a++) {
         sum->mean[a] -= pz[a] * m.area[2];

@@ -145,23 +145,23 @@ static int find_internal(cuda_state *s, err *e)
 
 /* ---- in and out */
 
-/* A number whose last bits have room for MARCH_BITS: to 2e-6 of it. */
-static uint32_t weight_bits(double weight)
+/* A number whose last bits have room for MARCH_BITS: in single precision to 2e-6 of it, in double to 4e-15. */
+static march_word weight_bits(double weight)
 {
-    const float number = (float)weight;
-    uint32_t bits;
+    const real number = (real)weight;
+    march_word bits;
     memcpy(&bits, &number, sizeof bits);
-    return (bits + (MARCH_BITS + 1) / 2) & ~(uint32_t)MARCH_BITS;
+    return (bits + (MARCH_BITS + 1) / 2) & ~(march_word)MARCH_BITS;
 }
 
 /* The fourth number of a node where it marches: of a displacement, or else of a velocity. */
-static float fourth(const cuda_state *s, bool is_displacement, int64_t k)
+static real fourth(const cuda_state *s, bool is_displacement, int64_t k)
 {
     const uint32_t info = s->tiles.node_info[k];
-    uint32_t bits = (info >> TILE_EXTRA & 1) << MARCH_EXTRA | (info >> TILE_APART & 1) << MARCH_APART;
-    float number;
+    march_word bits = (info >> TILE_EXTRA & 1) << MARCH_EXTRA | (info >> TILE_APART & 1) << MARCH_APART;
+    real number;
     if (is_displacement)
-        return (float)(1 / s->p->mass[s->tiles.node[k]]);
+        return (real)(1 / s->p->mass[s->tiles.node[k]]);
     for (int a = 0; a < 3; a++)
         bits |= (info >> (TILE_FREE + s->march.axis[a]) & 1) << (MARCH_FREE + a);
     if (s->p->weight)
@@ -176,9 +176,9 @@ static int set(cuda_state *s, int i, const double *from, err *e)
     for (int64_t k = 0; k < l.places; k++)
         for (int a = 0; a < l.columns; a++)
             s->staging[layout_at(&l, a, k)] = (real)from[l.columns * (int64_t)l.row[k] + a];
-    for (int64_t k = 0; i < CUDA_STEPPED && l.along == 4 && k < l.places; k++) {
-        const float number = fourth(s, i == TLED_DISPLACEMENT, k);
-        memcpy(&s->staging[4 * k + 3], &number, sizeof number);
+    for (int64_t k = 0; i < CUDA_STEPPED && l.along == MARCH_ALONG && k < l.places; k++) {
+        const real number = fourth(s, i == TLED_DISPLACEMENT, k);
+        memcpy(&s->staging[march_offset(3, l.stride) + MARCH_ALONG * k], &number, sizeof number);
     }
     return CUDA_TRY(cudaMemcpy(s->field[i], s->staging, (size_t)l.numbers * sizeof(real), cudaMemcpyHostToDevice));
 }

@@ -1,4 +1,5 @@
-/* The step in single precision by a march: see march.h. A thread keeps what the face between two elements has of
+/* The step by a march: see march.h. Compiled twice, in single precision and, with MARCH_DOUBLE, in double: its blocks
+ * have as many threads then, of twice the registers, and a multiprocessor has one where it has two in single. A thread keeps what the face between two elements has of
  * modes (the mean, x, y and xy of each component, sums and differences over four corners) and of forces on them;
  * so an element takes one new face, and a node the sums of one. Compiled with fused multiplications and
  * additions: its bytes are not the processor's.
@@ -14,7 +15,9 @@
  * of the next one are computed: a warp says that it is done with a layer, and only after it has computed the next one
  * does it wait until all have said so, so that those with fewer cells seldom keep others waiting.
  */
+#ifndef MARCH_DOUBLE
 #define ELEMENT_SINGLE
+#endif
 extern "C" {
 #include "physics/element.h"
 }
@@ -25,7 +28,7 @@ extern "C" {
 
 enum {
     TAKEN = 4,                 /* layers before its last, a block takes its next unit */
-    TOGETHER = 2,              /* blocks of a multiprocessor */
+    TOGETHER = SINGLE ? 2 : 1, /* blocks of a multiprocessor */
     ZEROS = 3,                 /* layers after its last with cells, a warp has left zeros in both buffers of forces */
     SPEEDS_AHEAD = SPEEDS - 1, /* layers that velocities are ahead */
     UNDERWAY = 3,              /* groups of copies that a layer does not wait for: of so many layers before it */
@@ -56,57 +59,54 @@ typedef struct turn {
     uint32_t memory;
 } turn;
 
-static __device__ __forceinline__ const float4 *node_of(const float4 *p, uint32_t word)
-{
-    return nth(p, word & MARCH_NODE);
-}
-
-static __device__ __forceinline__ const float4 *from_of(const cuda_march_pass &p, const turn &t)
+static __device__ __forceinline__ const float4 *from_of(const cuda_march_pass<real> &p, const turn &t)
 {
     return p.state[t.pass % 2];
 }
 
-static __device__ __forceinline__ float4 *to_of(const cuda_march_pass &p, const turn &t)
+static __device__ __forceinline__ float4 *to_of(const cuda_march_pass<real> &p, const turn &t)
 {
     return p.state[1 - t.pass % 2];
 }
 
 /* What the pass does; STEP: it is one of those that end a step and begin the next. */
 template <bool STEP>
-static __device__ __forceinline__ const cuda_march_kind &kind_of(const cuda_march_pass &p, const turn &t)
+static __device__ __forceinline__ const cuda_march_kind<real> &kind_of(const cuda_march_pass<real> &p, const turn &t)
 {
     return p.kind[STEP ? (int)MARCH_STEP : t.kind];
 }
 
 /* The curves' values at the state that the pass reads. */
-static __device__ __forceinline__ const double *now_of(const cuda_march_pass &p, const turn &t)
+static __device__ __forceinline__ const double *now_of(const cuda_march_pass<real> &p, const turn &t)
 {
     return p.now + (int64_t)t.pass * p.row;
 }
 
-static __device__ __forceinline__ void send_extra(const float4 *from, uint32_t at, uint32_t stage, uint32_t extra)
+static __device__ __forceinline__ void send_extra(const cuda_march<real> &m, const float4 *from, uint32_t at,
+                                                  uint32_t stage, uint32_t extra)
 {
     if (has_extra())
-        send(extra_at(at) + stage, node_of(from, extra), extra & MARCH_THERE);
+        send_node(m, extra_at(at) + stage, node_of(from, extra), extra & MARCH_THERE);
 }
 
-static __device__ __forceinline__ void send_layer(const float4 *from, uint32_t at, uint32_t stage, uint32_t word,
-                                                  uint32_t extra)
+static __device__ __forceinline__ void send_layer(const cuda_march<real> &m, const float4 *from, uint32_t at,
+                                                  uint32_t stage, uint32_t word, uint32_t extra)
 {
-    send(at + stage, node_of(from, word), word & MARCH_THERE);
-    send_extra(from, at, stage, extra);
+    send_node(m, at + stage, node_of(from, word), word & MARCH_THERE);
+    send_extra(m, from, at, stage, extra);
 }
 
 static __device__ __forceinline__ face face_at(uint32_t node)
 {
-    return face_between(shared_load(node), shared_load(node + NODE), shared_load(node + GRID * NODE),
-                        shared_load(node + GRID * NODE + NODE));
+    return face_between(node_load(node), node_load(node + NODE), node_load(node + GRID * NODE),
+                        node_load(node + GRID * NODE + NODE));
 }
 
-static_assert(offsetof(march_cell, muscle) == 16 && sizeof(march_cell) % 16 == 0, "read 16 bytes at a time");
+static_assert(offsetof(cuda_march_cell<real>, muscle) == sizeof(real4) && sizeof(cuda_march_cell<real>) % 16 == 0,
+              "read 16 bytes at a time");
 
 /* Which special cell is this thread's, by a layer's detail; 0: none. */
-static __device__ __forceinline__ int32_t which_of(const cuda_march &m, int32_t detail)
+static __device__ __forceinline__ int32_t which_of(const cuda_march<real> &m, int32_t detail)
 {
     return detail < 0 ? 0 : m.which[MARCH_THREADS * (int64_t)detail + threadIdx.x];
 }
@@ -114,23 +114,24 @@ static __device__ __forceinline__ int32_t which_of(const cuda_march &m, int32_t 
 /* Where what this thread's special cell of layer c is made of stands. */
 static __device__ __forceinline__ uint32_t record_of(uint32_t memory, int c)
 {
-    return memory + RECORDS + (uint32_t)(c % 3) * 2 * RECORD + threadIdx.x * NODE;
+    return memory + RECORDS + (uint32_t)(c % 3) * RECORDS_EACH + threadIdx.x * NODE;
 }
 
-/* The first halves of layer c's special cells are on their way. They are the thread's own: nobody else reads them. */
-static __device__ __forceinline__ void send_special(const cuda_march &m, uint32_t memory, int c, int32_t which)
+/* The first parts of layer c's special cells are on their way. They are the thread's own: nobody else reads them. */
+static __device__ __forceinline__ void send_special(const cuda_march<real> &m, uint32_t memory, int c, int32_t which)
 {
     const float4 *cell = (const float4 *)(m.cell + which - 1);
     const uint32_t to = record_of(memory, c);
     if (!which)
         return;
-    send(to, cell, true);
-    send(to + RECORD, cell + 1, true);
+#pragma unroll
+    for (uint32_t i = 0; i < RECORDS_EACH / RECORD; i++)
+        send(to + i * RECORD, cell + i, true);
 }
 
 /* What this thread's special cell of a layer has if it is cut; else NULL. */
 template <bool CUTS>
-static __device__ __forceinline__ const march_cut *cut_of(const cuda_march &m, bool special, int32_t layer)
+static __device__ __forceinline__ const march_cut *cut_of(const cuda_march<real> &m, bool special, int32_t layer)
 {
     const int32_t which = CUTS && special ? which_of(m, m.detail[layer]) : 0;
     return which && which <= m.cuts ? m.cut + which - 1 : NULL;
@@ -140,23 +141,23 @@ static __device__ __forceinline__ const march_cut *cut_of(const cuda_march &m, b
  * theirs; here, next: where the displacements of the cell's layers stand; layer: of all; few cells have a
  * second muscle, which is looked for there. cut: cut_of. */
 template <march_control K>
-static __device__ __forceinline__ void muscle_forces(const cuda_march &m, const double *now, uint32_t record,
+static __device__ __forceinline__ void muscle_forces(const cuda_march<real> &m, const double *now, uint32_t record,
                                                      int32_t layer, uint32_t here, uint32_t next, const march_cut *cut,
                                                      face *sum, push<K> *below)
 {
-    const float4 first = shared_load(record + RECORD);
+    const float4 first = shared_load(record + MUSCLES);
     const int32_t curve = (int32_t)__float_as_uint(first.w);
     if (curve < 0)
         return;
     const element_tensor h = gradient_by(m, cut, face_at(here), face_at(next));
-    const float peak = shared_number(record + 12);
-    add_tension(m, h, {{first.x, first.y, first.z}, peak * (float)now[3 * (curve & ~MARCH_SECOND)]}, cut, sum, below);
+    const real peak = record_peak(record);
+    add_tension(m, h, {{first.x, first.y, first.z}, peak * (real)now[3 * (curve & ~MARCH_SECOND)]}, cut, sum, below);
     if (!(curve & MARCH_SECOND))
         return;
-    const march_cell *cell = m.cell + which_of(m, m.detail[layer]) - 1;
+    const cuda_march_cell<real> *cell = m.cell + which_of(m, m.detail[layer]) - 1;
     const march_muscle &second = cell->muscle[1];
     add_tension(m, h,
-                {{second.fibre[0], second.fibre[1], second.fibre[2]}, cell->second_peak * (float)now[3 * second.curve]},
+                {{second.fibre[0], second.fibre[1], second.fibre[2]}, cell->second_peak * (real)now[3 * second.curve]},
                 cut, sum, below);
 }
 
@@ -169,13 +170,13 @@ template <march_control K> static __device__ __forceinline__ void fetch_along(co
 
 /* What a cell is made of. record: where its first half stands, if it is `special`. */
 template <march_control K>
-static __device__ __forceinline__ tissue<K> tissue_of(const cuda_march &m, uint2 along, bool special, int32_t layer,
-                                                      uint32_t record)
+static __device__ __forceinline__ tissue<K> tissue_of(const cuda_march<real> &m, uint2 along, bool special,
+                                                      int32_t layer, uint32_t record)
 {
     tissue<K> of = plain_tissue<K>(m);
     if (special) {
         const bool asks = march_kind<K>::FORM == FORM_FIRST || march_kind<K>::FAMILIES > 0;
-        special_tissue(m, m.cell[asks ? which_of(m, m.detail[layer]) - 1 : 0], shared_load(record), &of);
+        special_tissue(m, m.cell[asks ? which_of(m, m.detail[layer]) - 1 : 0], record_law(record), &of);
     }
     of.along = along;
     return of;
@@ -183,17 +184,17 @@ static __device__ __forceinline__ tissue<K> tissue_of(const cuda_march &m, uint2
 
 /* As cell_forces, of any cell of layer c. */
 template <march_control K, bool SPECIAL, bool CUTS>
-static __device__ __forceinline__ void forces_of(const cuda_march &m, const double *now, const turn &t, flow<K> *f,
-                                                 int c, const face &low, const face &high, uint32_t here, uint32_t next,
-                                                 face *sum)
+static __device__ __forceinline__ void forces_of(const cuda_march<real> &m, const double *now, const turn &t,
+                                                 flow<K> *f, int c, const face &low, const face &high, uint32_t here,
+                                                 uint32_t next, face *sum)
 {
     const bool is = f->now & MARCH_CELL, special = SPECIAL && f->now & MARCH_SPECIAL;
     const uint32_t record = record_of(t.memory, c);
     const march_cut *cut = cut_of<CUTS>(m, special, t.base + c);
     if constexpr (K == MARCH_ISOTROPIC) {
-        float mu = is ? m.law[0] : 0, bulk = is ? m.law[1] : 0, hourglass = is ? m.law[2] : 0;
+        real mu = is ? m.law[0] : 0, bulk = is ? m.law[1] : 0, hourglass = is ? m.law[2] : 0;
         if (special) {
-            const float4 law = shared_load(record);
+            const real4 law = record_law(record);
             mu = law.x, bulk = law.y, hourglass = law.z;
         }
         cell_forces(m, mu, bulk, hourglass, is, low, high, sum, &f->below);
@@ -208,20 +209,20 @@ static __device__ __forceinline__ void forces_of(const cuda_march &m, const doub
 /* The forces on the corners of a face go to shared memory. */
 static __device__ __forceinline__ void share_forces(const face &sum, uint32_t to)
 {
-    float own[3], x[3], y[3], xy[3];
+    real own[3], x[3], y[3], xy[3];
 #pragma unroll
     for (int a = 0; a < 3; a++) {
-        const float low = sum.mean[a] - sum.y[a], high = sum.mean[a] + sum.y[a];
-        const float low_x = sum.x[a] - sum.xy[a], high_x = sum.x[a] + sum.xy[a];
+        const real low = sum.mean[a] - sum.y[a], high = sum.mean[a] + sum.y[a];
+        const real low_x = sum.x[a] - sum.xy[a], high_x = sum.x[a] + sum.xy[a];
         own[a] = low - low_x;
         x[a] = low + low_x;
         y[a] = high - high_x;
         xy[a] = high + high_x;
     }
-    shared_store(to, x[0], x[1], x[2]);
-    shared_store(to + FORCE, y[0], y[1], y[2]);
-    shared_store(to + 2 * FORCE, xy[0], xy[1], xy[2]);
-    shared_store(to + 3 * FORCE, own[0], own[1], own[2]);
+    node_store(to, x[0], x[1], x[2]);
+    node_store(to + FORCE, y[0], y[1], y[2]);
+    node_store(to + 2 * FORCE, xy[0], xy[1], xy[2]);
+    node_store(to + 3 * FORCE, own[0], own[1], own[2]);
 }
 
 #include "tled/cuda/cuda_march_nodes.cuh"
@@ -236,7 +237,7 @@ static __device__ __forceinline__ void say_done(const turn &t)
 /* Words by which a layer sends at its end, and the next one's directions: they are on their way while it is worked
  * on. */
 template <march_control K>
-static __device__ __forceinline__ void fetch_words(const cuda_march &m, int32_t layer, flow<K> *f)
+static __device__ __forceinline__ void fetch_words(const cuda_march<real> &m, int32_t layer, flow<K> *f)
 {
     fetch_along<K>(m.along, MARCH_THREADS * ((int64_t)layer + 1) + threadIdx.x, &f->along_then);
     f->then = f->word[MARCH_WORDS];
@@ -248,7 +249,7 @@ static __device__ __forceinline__ void fetch_words(const cuda_march &m, int32_t 
 
 /* Special cells of layer c + 3 are sent for, into the place of those of layer c; what later ones are is on its way. */
 template <march_control K>
-static __device__ __forceinline__ void go_on_special(const cuda_march &m, const turn &t, flow<K> *f, int c)
+static __device__ __forceinline__ void go_on_special(const cuda_march<real> &m, const turn &t, flow<K> *f, int c)
 {
     if (c + 3 < t.cells)
         send_special(m, t.memory, c + 3, f->which);
@@ -257,7 +258,7 @@ static __device__ __forceinline__ void go_on_special(const cuda_march &m, const 
 }
 
 template <march_control K>
-static __device__ __forceinline__ void begin_special(const cuda_march &m, const turn &t, flow<K> *f)
+static __device__ __forceinline__ void begin_special(const cuda_march<real> &m, const turn &t, flow<K> *f)
 {
 #pragma unroll
     for (int k = 0; k < 3; k++)
@@ -268,8 +269,8 @@ static __device__ __forceinline__ void begin_special(const cuda_march &m, const 
 }
 
 /* Thread 0's work: says which unit the block takes next, and in which pass. What that is, is on its way. */
-static __device__ __forceinline__ void note_next(const cuda_march &m, const cuda_march_pass &p, uint32_t memory,
-                                                 uint32_t ticket)
+static __device__ __forceinline__ void note_next(const cuda_march<real> &m, const cuda_march_pass<real> &p,
+                                                 uint32_t memory, uint32_t ticket)
 {
     const uint32_t next = ticket - p.ticket, units = (uint32_t)m.units;
     const bool is = next < units * (uint32_t)p.passes;
@@ -279,8 +280,8 @@ static __device__ __forceinline__ void note_next(const cuda_march &m, const cuda
 
 /* Takes a ticket in one of the last layers, and looks at it a layer later, when it is there. left: layers. */
 template <march_control K>
-static __device__ __forceinline__ void take_next(const cuda_march &m, const cuda_march_pass &p, const turn &t, int left,
-                                                 flow<K> *f)
+static __device__ __forceinline__ void take_next(const cuda_march<real> &m, const cuda_march_pass<real> &p,
+                                                 const turn &t, int left, flow<K> *f)
 {
     const int ago = (t.cells < TAKEN ? t.cells : TAKEN) - left;
     if (ago == 0 && threadIdx.x == 0)
@@ -301,9 +302,9 @@ template <bool SPECIAL, int ODD> static __device__ __forceinline__ void wait_bef
  * next: where the displacements of layer c + 1 stand; old: those of c - 1, and those of c + 7 from here on. Who has no
  * cells finds the face of those that the next layer has. */
 template <march_control K, bool SPECIAL, bool STEP, bool CUTS, int ODD>
-static __device__ __forceinline__ void layer(const cuda_march &m, const cuda_march_pass &p, const turn &t, uint32_t at,
-                                             flow<K> *f, int left, uint32_t next, uint32_t old, const face &low,
-                                             face *high)
+static __device__ __forceinline__ void layer(const cuda_march<real> &m, const cuda_march_pass<real> &p, const turn &t,
+                                             uint32_t at, flow<K> *f, int left, uint32_t next, uint32_t old,
+                                             const face &low, face *high)
 {
     const uint32_t forces = at + FORCES + ODD * FORCES_EACH, before = at + FORCES + (1 - ODD) * FORCES_EACH;
     const uint32_t speed = at + VELOCITIES + ODD * FORCE + f->pair; /* of layer c - 1, and of c + 3 from here on */
@@ -328,11 +329,11 @@ static __device__ __forceinline__ void layer(const cuda_march &m, const cuda_mar
     }
     move_node<STEP, CUTS>(m, p, t, f->last, before, at + old, speed);
     if (left >= MARCH_AHEAD) {
-        send_both(speed, node_of(p.velocity, f->speed), f->speed & MARCH_OWN, at + old, node_of(from_of(p, t), f->far),
-                  f->far & MARCH_THERE);
-        send_extra(from_of(p, t), at, old, f->more);
+        send_nodes(m, speed, node_of(p.velocity, f->speed), f->speed & MARCH_OWN, at + old,
+                   node_of(from_of(p, t), f->far), f->far & MARCH_THERE);
+        send_extra(m, from_of(p, t), at, old, f->more);
     } else {
-        send(speed, node_of(p.velocity, f->speed), left > SPEEDS_AHEAD ? f->speed & MARCH_OWN : 0);
+        send_node(m, speed, node_of(p.velocity, f->speed), left > SPEEDS_AHEAD ? f->speed & MARCH_OWN : 0);
         take_next(m, p, t, left, f);
     }
     if (SPECIAL)
@@ -347,18 +348,18 @@ static __device__ __forceinline__ void layer(const cuda_march &m, const cuda_mar
 }
 
 /* Thread 0's work. */
-static __device__ void put_gravity(const cuda_march &m, const cuda_march_pass &p, const turn &t)
+static __device__ void put_gravity(const cuda_march<real> &m, const cuda_march_pass<real> &p, const turn &t)
 {
     const double *g = m.v.gravity < 0 ? NULL : now_of(p, t) + 3 * m.v.gravity;
     for (int a = 0; a < 3; a++)
-        shared_number_store(t.memory + GRAVITY + 4 * a, g ? p.kind[t.kind].push * (float)g[m.axis[a]] : 0);
-    shared_number_store(t.memory + GRAVITY + 12, 0);
+        node_number_store(t.memory + GRAVITY, a, g ? p.kind[t.kind].push * (real)g[m.axis[a]] : 0);
+    node_number_store(t.memory + GRAVITY, 3, 0);
 }
 
 /* Waits until the units that have to do with this one have made the pass before: what they wrote may be read, and what
  * they read written. Units are taken in turn, so that those of the first turn that is not done wait for none. */
-static __device__ __forceinline__ void wait_for_near(const cuda_march &m, const cuda_march_pass &p, const turn &t,
-                                                     uint32_t unit)
+static __device__ __forceinline__ void wait_for_near(const cuda_march<real> &m, const cuda_march_pass<real> &p,
+                                                     const turn &t, uint32_t unit)
 {
     const int32_t *near = m.near + (int64_t)unit * m.nears;
     for (int32_t i = (int32_t)threadIdx.x; i < m.nears; i += MARCH_THREADS)
@@ -369,7 +370,7 @@ static __device__ __forceinline__ void wait_for_near(const cuda_march &m, const 
 
 /* The first layers of a unit are there. What the pass before wrote may be read from here on. */
 template <march_control K, bool SPECIAL>
-static __device__ __forceinline__ void begin(const cuda_march &m, const cuda_march_pass &p, const turn &t,
+static __device__ __forceinline__ void begin(const cuda_march<real> &m, const cuda_march_pass<real> &p, const turn &t,
                                              uint32_t unit, uint32_t at, flow<K> *f)
 {
     uint32_t word[MARCH_AHEAD], extra[MARCH_AHEAD];
@@ -385,11 +386,11 @@ static __device__ __forceinline__ void begin(const cuda_march &m, const cuda_mar
 #pragma unroll
     for (int k = 0; k < MARCH_AHEAD; k++)
         if (k <= t.cells)
-            send_layer(from_of(p, t), at, k * STAGE, word[k], extra[k]);
+            send_layer(m, from_of(p, t), at, k * STAGE, word[k], extra[k]);
 #pragma unroll
     for (int k = 1; k < SPEEDS_AHEAD; k++)
-        send(at + VELOCITIES + (k + 1) % SPEEDS * FORCE, node_of(p.velocity, word[k]),
-             k < t.cells ? word[k] & MARCH_OWN : 0);
+        send_node(m, at + VELOCITIES + (k + 1) % SPEEDS * FORCE, node_of(p.velocity, word[k]),
+                  k < t.cells ? word[k] & MARCH_OWN : 0);
     if (SPECIAL)
         begin_special(m, t, f);
     sent();
@@ -406,8 +407,8 @@ static __device__ __forceinline__ uint32_t after(uint32_t stage)
 }
 
 template <march_control K, bool SPECIAL, bool STEP, bool CUTS>
-static __device__ __forceinline__ void march_unit_of(const cuda_march &m, const cuda_march_pass &p, const turn &t,
-                                                     uint32_t unit)
+static __device__ __forceinline__ void march_unit_of(const cuda_march<real> &m, const cuda_march_pass<real> &p,
+                                                     const turn &t, uint32_t unit)
 {
     const uint32_t at = t.memory + (uint32_t)place_of((int)threadIdx.x) * NODE;
     flow<K> f = {};
@@ -439,7 +440,8 @@ static __device__ __forceinline__ void march_unit_of(const cuda_march &m, const 
 #include "tled/cuda/cuda_march_tips.cuh"
 
 /* Thread 0's work: the first unit of a block, as its next. */
-static __device__ __forceinline__ void take_first(const cuda_march &m, const cuda_march_pass &p, const turn &t)
+static __device__ __forceinline__ void take_first(const cuda_march<real> &m, const cuda_march_pass<real> &p,
+                                                  const turn &t)
 {
     barrier_make(t.memory + SAID, WARPS);
     note_next(m, p, t.memory, take_ticket(m.ticket));
@@ -448,7 +450,7 @@ static __device__ __forceinline__ void take_first(const cuda_march &m, const cud
 }
 
 /* Which of p.kind a pass is. */
-static __device__ __forceinline__ int kind_at(const cuda_march_pass &p, uint32_t pass)
+static __device__ __forceinline__ int kind_at(const cuda_march_pass<real> &p, uint32_t pass)
 {
     if (pass == 0 && !p.amid)
         return MARCH_FIRST;
@@ -460,7 +462,7 @@ static __device__ __forceinline__ int kind_at(const cuda_march_pass &p, uint32_t
  * them are cut. */
 template <march_control K, bool TIPS, bool SPECIALS, bool CUTS>
 static __global__ void __launch_bounds__(MARCH_THREADS, TOGETHER)
-    march_kernel(const __grid_constant__ cuda_march m, const __grid_constant__ cuda_march_pass p)
+    march_kernel(const __grid_constant__ cuda_march<real> m, const __grid_constant__ cuda_march_pass<real> p)
 {
     DYNAMIC_SHARED(float4, shared);
     turn t = {.memory = shared_at(shared)};
@@ -496,21 +498,21 @@ static __global__ void __launch_bounds__(MARCH_THREADS, TOGETHER)
 
 enum { PACK_THREADS = 256 };
 
-static __global__ void unpack_kernel(const __grid_constant__ cuda_march m, const float *from, float4 *to)
+static __global__ void unpack_kernel(const __grid_constant__ cuda_march<real> m, const real *from, float4 *to)
 {
     const int64_t n = (int64_t)blockIdx.x * PACK_THREADS + threadIdx.x;
     if (n >= m.v.nodes)
         return;
-    to[n] = make_float4(from[m.axis[0] * m.v.stride + n], from[m.axis[1] * m.v.stride + n],
-                        from[m.axis[2] * m.v.stride + n], to[n].w);
+    for (int a = 0; a < 3; a++)
+        ((real *)to)[march_offset(a, m.v.stride) + n * MARCH_ALONG] = from[m.axis[a] * m.v.stride + n];
 }
 
-static int64_t pack_blocks(const cuda_march *m)
+static int64_t pack_blocks(const cuda_march<real> *m)
 {
     return (m->v.nodes + PACK_THREADS - 1) / PACK_THREADS;
 }
 
-cudaError_t cuda_march_unpack(const cuda_march *m, const float *from, float4 *to, cudaStream_t stream)
+template <> cudaError_t cuda_march_unpack(const cuda_march<real> *m, const real *from, float4 *to, cudaStream_t stream)
 {
     return card_start(unpack_kernel, {pack_blocks(m), PACK_THREADS, 0, stream}, *m, from, to);
 }
@@ -527,22 +529,20 @@ static constexpr bool march_lean(march_control k)
 /* Calls f with the kernel. */
 template <bool TIPS, bool SPECIALS, class F> static cudaError_t with_kernel(march_control control, F f)
 {
-#define MARCH_ROW(NAME, form, families)                                                                                \
-    case NAME:                                                                                                         \
-        return f(march_kernel<NAME, TIPS, (SPECIALS || !march_lean(NAME)), false>);
-    switch (control) {
-        MARCHES(MARCH_ROW)
-    default:
-        return cudaErrorInvalidValue;
-    }
+#define MARCH_ROW(NAME, form, families, doubles)                                                                       \
+    if constexpr (march_has(NAME))                                                                                     \
+        if (control == NAME)                                                                                           \
+            return f(march_kernel<NAME, TIPS, (SPECIALS || !march_lean(NAME)), false>);
+    MARCHES(MARCH_ROW)
 #undef MARCH_ROW
+    return cudaErrorInvalidValue;
 }
 
 /* Likewise of models with cut cells: one for each control that has any, with all that others do without. */
 template <class F> static cudaError_t with_cut_kernel(march_control control, F f)
 {
-#define MARCH_ROW(NAME, form, families)                                                                                \
-    if constexpr (NAME != MARCH_ISOTROPIC)                                                                             \
+#define MARCH_ROW(NAME, form, families, doubles)                                                                       \
+    if constexpr (march_has(NAME) && NAME != MARCH_ISOTROPIC)                                                          \
         if (control == NAME)                                                                                           \
             return f(march_kernel<NAME, true, true, true>);
     MARCHES(MARCH_ROW)
@@ -559,14 +559,15 @@ template <class F> static cudaError_t with_march(march_control control, bool tip
     return specials ? with_kernel<false, true>(control, f) : with_kernel<false, false>(control, f);
 }
 
-cudaError_t cuda_march_slots(march_control control, bool cut, int64_t *slots)
+template <> cudaError_t cuda_march_slots<real>(march_control control, bool cut, int64_t *slots)
 {
-    int device = 0, processors = 0, major = 0, least = INT_MAX;
+    int device = 0, processors = 0, major = 0, room = 0, least = INT_MAX;
     *slots = 0;
     cudaError_t e = cudaGetDevice(&device);
     e = e == cudaSuccess ? cudaDeviceGetAttribute(&major, cudaDevAttrComputeCapabilityMajor, device) : e;
     e = e == cudaSuccess ? cudaDeviceGetAttribute(&processors, cudaDevAttrMultiProcessorCount, device) : e;
-    if (e != cudaSuccess || major < 9)
+    e = e == cudaSuccess ? cudaDeviceGetAttribute(&room, cudaDevAttrMaxSharedMemoryPerBlockOptin, device) : e;
+    if (e != cudaSuccess || major < 9 || room < (int)SHARED)
         return e;
     for (int has = 0; e == cudaSuccess && has < 4;
          has++) /* whether there are tips, or special cells, is not known yet */
@@ -583,8 +584,9 @@ cudaError_t cuda_march_slots(march_control control, bool cut, int64_t *slots)
     return e;
 }
 
-cudaError_t cuda_march_start(march_control control, const cuda_march *m, const cuda_march_pass *p, int64_t blocks,
-                             cudaStream_t stream)
+template <>
+cudaError_t cuda_march_start(march_control control, const cuda_march<real> *m, const cuda_march_pass<real> *p,
+                             int64_t blocks, cudaStream_t stream)
 {
     const card_blocks how = {blocks, MARCH_THREADS, SHARED, stream};
     return with_march(control, m->tip != NULL, m->specials > 0, m->cuts > 0,

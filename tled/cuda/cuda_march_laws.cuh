@@ -16,18 +16,18 @@
 
 /* Modes of a face's four nodes, or forces on them. */
 typedef struct face {
-    float mean[3], x[3], y[3], xy[3];
+    real mean[3], x[3], y[3], xy[3];
 } face;
 
 /* Of displacements at corners (0, 0), (1, 0), (0, 1), (1, 1). */
-static __device__ __forceinline__ face face_between(float4 a, float4 b, float4 c, float4 d)
+static __device__ __forceinline__ face face_between(real4 a, real4 b, real4 c, real4 d)
 {
-    const float low[2][3] = {{a.x, a.y, a.z}, {b.x, b.y, b.z}}, high[2][3] = {{c.x, c.y, c.z}, {d.x, d.y, d.z}};
+    const real low[2][3] = {{a.x, a.y, a.z}, {b.x, b.y, b.z}}, high[2][3] = {{c.x, c.y, c.z}, {d.x, d.y, d.z}};
     face f;
 #pragma unroll
     for (int i = 0; i < 3; i++) {
-        const float s = low[0][i] + low[1][i], t = low[1][i] - low[0][i];
-        const float sum = high[0][i] + high[1][i], gap = high[1][i] - high[0][i];
+        const real s = low[0][i] + low[1][i], t = low[1][i] - low[0][i];
+        const real sum = high[0][i] + high[1][i], gap = high[1][i] - high[0][i];
         f.mean[i] = s + sum;
         f.y[i] = sum - s;
         f.x[i] = t + gap;
@@ -38,39 +38,65 @@ static __device__ __forceinline__ face face_between(float4 a, float4 b, float4 c
 
 /* F' and, first order in H', what of it is measured from rest. */
 typedef struct stretch {
-    float h[3][3];  /* H': row a, column: of the modes x, y, z */
-    float g[3][3];  /* cof F'; on the diagonal, less that at rest */
-    float dilation; /* det F' - V' */
-    float j;        /* J; no cell: NO_CELL */
-    float third;    /* (tr C - 3)/3 */
+    real h[3][3];  /* H': row a, column: of the modes x, y, z */
+    real g[3][3];  /* cof F'; on the diagonal, less that at rest */
+    real dilation; /* det F' - V' */
+    real j;        /* J; no cell: in single precision NO_CELL */
+    real root;     /* in double precision J^(-1/3); no cell: 0 */
+    real third;    /* (tr C - 3)/3 */
 } stretch;
 
 /* What a cell is made of, under physical control: what holds it; what laws have beside it, and the directions of
  * families. */
 template <march_control K> struct tissue {
-    march_hold hold;
-    march_more more;
-    march_family family;
+    march_hold<real> hold;
+    march_more<real> more;
+    march_family<real> family;
     uint2 along;
 };
 
 /* As J, of which all that depends on it is 0: a power of it, and what it divides. */
 #define NO_CELL 3e38f
 
+/* x^(-1/3), in double precision, to some 1e-16 of it. With h = 1 - x y^3, x^(-1/3) = y (1 - h)^(-1/3) = y (1 + h/3 + 2/9 h^2 + ...); h is some 1e-6. */
+static __device__ __forceinline__ double near_root_of_inverse(double x)
+{
+    const double y = near_exp2(near_log2((float)x) * (-1.f / 3)), h = fma(-x * y, y * y, 1.);
+    return fma(y * h, fma(h, 2. / 9, 1. / 3), y);
+}
+
+/* J^(-N/3); no cell: 0. */
+template <int N> static __device__ __forceinline__ real power_of(const stretch &s)
+{
+    if constexpr (N == 3 && SINGLE)
+        return near_inverse((float)s.j);
+    if constexpr (SINGLE)
+        return near_exp2(near_log2((float)s.j) * (-(float)N / 3));
+    const real square = s.root * s.root;
+    return N == 2 ? square : N == 3 ? square * s.root : N == 4 ? square * square : square * s.root * square;
+}
+
+/* What march_hold has for a modulus. */
+static __device__ __forceinline__ real held_mu(real mu)
+{
+    return SINGLE ? (real)near_log2((float)mu) : mu;
+}
+
 /* Of a box, by axis. */
-template <march_control K> static __device__ __forceinline__ const march_side &side_of(const cuda_march &m, int i)
+template <march_control K>
+static __device__ __forceinline__ const march_side<real> &side_of(const cuda_march<real> &m, int i)
 {
     return m.side[march_kind<K>::CUBES ? 0 : i];
 }
 
 /* V'/c^2; of a cube, c. */
-template <march_control K> static __device__ __forceinline__ float squares_of(const cuda_march &m, int i)
+template <march_control K> static __device__ __forceinline__ real squares_of(const cuda_march<real> &m, int i)
 {
     return march_kind<K>::CUBES ? m.side[0].width : m.side[i].squares;
 }
 
 /* Adds c^2 (C - 1) on the diagonal, along one axis, to c H' there; f: F' there. */
-static __device__ __forceinline__ float add_square(const float h[3][3], float f, int i, float sum)
+static __device__ __forceinline__ real add_square(const real h[3][3], real f, int i, real sum)
 {
     const int j = (i + 1) % 3, k = (i + 2) % 3;
     sum += h[i][i] * f;
@@ -80,10 +106,10 @@ static __device__ __forceinline__ float add_square(const float h[3][3], float f,
 
 /* (tr C - 3)/3, of a cube in one sum; wide: of a cube, c H' on the diagonal, which cof F' has too. */
 template <march_control K>
-static __device__ __forceinline__ float third_of(const cuda_march &m, const float h[3][3], const float wide[3],
-                                                 const float f[3])
+static __device__ __forceinline__ real third_of(const cuda_march<real> &m, const real h[3][3], const real wide[3],
+                                                const real f[3])
 {
-    float all = 0;
+    real all = 0;
 #pragma unroll
     for (int i = 0; i < 3; i++)
         if constexpr (march_kind<K>::CUBES)
@@ -94,12 +120,12 @@ static __device__ __forceinline__ float third_of(const cuda_march &m, const floa
 }
 
 /* Adds what the modes of a part have (element_cut.h), to H'. */
-static __device__ __forceinline__ void add_cut(const march_cut &c, const face &low, const face &high, float h[3][3])
+static __device__ __forceinline__ void add_cut(const march_cut &c, const face &low, const face &high, real h[3][3])
 {
 #pragma unroll
     for (int a = 0; a < 3; a++) {
-        const float xy = low.xy[a] + high.xy[a], xyz = high.xy[a] - low.xy[a];
-        const float yz = high.y[a] - low.y[a], zx = high.x[a] - low.x[a];
+        const real xy = low.xy[a] + high.xy[a], xyz = high.xy[a] - low.xy[a];
+        const real yz = high.y[a] - low.y[a], zx = high.x[a] - low.x[a];
         h[a][0] += c.y * xy + c.z * zx + c.yz * xyz;
         h[a][1] += c.x * xy + c.z * yz + c.zx * xyz;
         h[a][2] += c.y * yz + c.x * zx + c.xy * xyz;
@@ -108,11 +134,11 @@ static __device__ __forceinline__ void add_cut(const march_cut &c, const face &l
 
 /* cut: of a cut cell; else NULL. */
 template <march_control K>
-static __device__ __forceinline__ stretch stretch_of(const cuda_march &m, bool is, const face &low, const face &high,
-                                                     const march_cut *cut)
+static __device__ __forceinline__ stretch stretch_of(const cuda_march<real> &m, bool is, const face &low,
+                                                     const face &high, const march_cut *cut)
 {
     stretch s;
-    float f[3], wide[3];
+    real f[3], wide[3];
 #pragma unroll
     for (int a = 0; a < 3; a++) {
         s.h[a][0] = low.x[a] + high.x[a];
@@ -129,48 +155,51 @@ static __device__ __forceinline__ stretch stretch_of(const cuda_march &m, bool i
 #pragma unroll
     for (int i = 0; i < 3; i++) {
         const int j = (i + 1) % 3, k = (i + 2) % 3;
-        s.g[i][i] = fmaf(s.h[j][j], f[k], fmaf(-s.h[j][k], s.h[k][j], wide[k]));
+        s.g[i][i] = fma(s.h[j][j], f[k], fma(-s.h[j][k], s.h[k][j], wide[k]));
         s.g[i][j] = s.h[j][k] * s.h[k][i] - s.h[j][i] * f[k];
         s.g[i][k] = s.h[j][i] * s.h[k][j] - s.h[k][i] * f[j];
     }
     s.dilation = f[0] * s.g[0][0] + m.side[0].face * s.h[0][0] + s.h[0][1] * s.g[0][1] + s.h[0][2] * s.g[0][2];
-    s.j = is ? 1 + s.dilation * m.side[0].density : NO_CELL;
+    s.j = is ? 1 + s.dilation * m.side[0].density : SINGLE ? (real)NO_CELL : 1;
+    s.root = SINGLE ? 0 : is ? near_root_of_inverse((double)s.j) : 0;
     s.third = third_of<K>(m, s.h, wide, f);
     return s;
 }
 
 /* What a law of the form `first` has at a cell's x = I1bar - 3, of which hourglass control has to know (element.h). */
 typedef struct bent {
-    float scale;                        /* J^-5/3; no cell: 0 */
-    float slope, shear, slope_of_shear; /* 2 f'(x); T/T(0); its slope, over V' */
+    real scale;                        /* J^-5/3; no cell: 0 */
+    real slope, shear, slope_of_shear; /* 2 f'(x); T/T(0); its slope, over V' */
 } bent;
 
 /* c[0] + c[1] x + ... */
-template <int COUNT> static __device__ __forceinline__ float series(const float *c, float x)
+template <int COUNT> static __device__ __forceinline__ real series(const real *c, real x)
 {
-    float sum = c[COUNT - 1];
+    real sum = c[COUNT - 1];
 #pragma unroll
     for (int k = COUNT - 2; k >= 0; k--)
-        sum = fmaf(sum, x, c[k]);
+        sum = fma(sum, x, c[k]);
     return sum;
 }
 
 /* By y = x/3. No cell: y is -1, so that all is finite. All powers take less time than to ask how many there are. */
-static __device__ __forceinline__ bent bent_of(const march_more &c, const stretch &s)
+static __device__ __forceinline__ bent bent_of(const march_more<real> &c, const stretch &s)
 {
     bent b;
-    const float root = near_exp2(near_log2(s.j) * (-2.f / 3)), y = root * s.third + (root - 1);
-    b.scale = root * near_inverse(s.j);
+    const real root = power_of<2>(s), y = root * s.third + (root - 1);
+    b.scale = SINGLE ? root * near_inverse(s.j) : power_of<5>(s);
     b.slope = series<MARCH_POWERS>(c.slope, y);
     b.shear = 1 + y * series<MARCH_POWERS - 1>(c.shear, y);
     b.slope_of_shear = series<MARCH_POWERS - 1>(c.rise, y);
     return b;
 }
 
-/* mu J^-5/3 = 2^(log2 mu - 5/3 log2 J). */
-static __device__ __forceinline__ float scale_of(const march_hold &k, const stretch &s)
+/* mu J^-5/3; in single precision 2^(log2 mu - 5/3 log2 J). */
+static __device__ __forceinline__ real scale_of(const march_hold<real> &k, const stretch &s)
 {
-    return near_exp2(k.log_mu + near_log2(s.j) * (-5.f / 3));
+    if constexpr (SINGLE)
+        return near_exp2((float)k.mu + near_log2((float)s.j) * (-5.f / 3));
+    return k.mu * power_of<5>(s);
 }
 
 /* A direction from the two numbers that march_cells.h has of it. */
@@ -190,7 +219,8 @@ static __device__ __forceinline__ float number_of(uint32_t bits, float least, fl
 }
 
 /* Of two families. Returns whether there are any. */
-static __device__ __forceinline__ bool directions_of(const march_family &f, uint2 of, float first[3], float second[3])
+static __device__ __forceinline__ bool directions_of(const march_family<float> &f, uint2 of, float first[3],
+                                                     float second[3])
 {
     float a[3], sine, cosine;
     const bool is = of.y >> 31;
@@ -210,23 +240,23 @@ static __device__ __forceinline__ bool directions_of(const march_family &f, uint
 
 /* Adds what a family has, F'a0 being c a0 and h' a0: 2 W' of F to *both, that of F a0 (x) a0 to p. is:
  * there are fibres. */
-static __device__ __forceinline__ void add_family(const cuda_march &m, const march_family &f, bool is, const float a[3],
-                                                  const stretch &s, float *both, float p[3][3])
+static __device__ __forceinline__ void add_family(const cuda_march<real> &m, const march_family<real> &f, bool is,
+                                                  const float a[3], const stretch &s, real *both, real p[3][3])
 {
-    float moved[3], dot = 0, square = 0;
+    real moved[3], dot = 0, square = 0;
 #pragma unroll
     for (int i = 0; i < 3; i++) {
         moved[i] = s.h[i][0] * a[0] + s.h[i][1] * a[1] + s.h[i][2] * a[2];
         dot += a[i] * moved[i];
         square += moved[i] * moved[i];
     }
-    const float strain = fmaxf(f.around * s.third + f.along * (2 * m.side[0].width * dot + square), 0);
-    const float twice = (is ? f.stiff : 0) * strain * near_exp2(fminf(f.grow * strain * strain, f.most));
-    const float own = twice * f.own;
+    const real strain = fmax(f.around * s.third + f.along * (2 * m.side[0].width * dot + square), (real)0);
+    const real twice = (is ? f.stiff : 0) * strain * near_exp2((float)fmin(f.grow * strain * strain, f.most));
+    const real own = twice * f.own;
     *both += twice * f.all;
 #pragma unroll
     for (int i = 0; i < 3; i++) {
-        const float to = own * (m.side[0].width * a[i] + moved[i]);
+        const real to = own * (m.side[0].width * a[i] + moved[i]);
 #pragma unroll
         for (int j = 0; j < 3; j++)
             p[i][j] += to * a[j];
@@ -237,22 +267,22 @@ static __device__ __forceinline__ void add_family(const cuda_march &m, const mar
  * I2 = G:G,
  *     P = b (F x G - 2 I2/(3 J) G) = b (F x (G - I) + tr H I - H^T) + b (2 - 2 I2/(3 J)) I - b (2 I2/(3 J)) (G - I),
  * where 2 - 2 I2/(3 J) = 2/J (J - 1 - 2/3 tr(G - I) - |G - I|^2/3). *g, *all: as of push_of. */
-static __device__ __forceinline__ void add_second(const cuda_march &m, float second, const stretch &s, float *g,
-                                                  float *all, float p[3][3])
+static __device__ __forceinline__ void add_second(const cuda_march<real> &m, real second, const stretch &s, real *g,
+                                                  real *all, real p[3][3])
 {
-    const march_side &side = m.side[0];
-    const float b = second * near_exp2(near_log2(s.j) * (-4.f / 3)), inverse = near_inverse(s.j);
-    const float by = b * 3 * side.thirds * side.width; /* b/c */
-    const float trace = s.h[0][0] + s.h[1][1] + s.h[2][2], turn = s.g[0][0] + s.g[1][1] + s.g[2][2];
-    float square = 0, f[3][3];
+    const march_side<real> &side = m.side[0];
+    const real b = second * power_of<4>(s), inverse = power_of<3>(s);
+    const real by = b * 3 * side.thirds * side.width; /* b/c */
+    const real trace = s.h[0][0] + s.h[1][1] + s.h[2][2], turn = s.g[0][0] + s.g[1][1] + s.g[2][2];
+    real square = 0, f[3][3];
 #pragma unroll
     for (int i = 0; i < 9; i++) {
         square += s.g[i / 3][i % 3] * s.g[i / 3][i % 3];
         f[i / 3][i % 3] = s.h[i / 3][i % 3] + (i % 4 ? 0 : side.width);
     }
-    const float squared = 3 * side.thirds; /* 1/c^2 */
-    const float less = s.dilation * side.density - (2.f / 3 * turn + 1.f / 3 * squared * square) * squared;
-    const float rest = 2 * b * less * inverse;
+    const real squared = 3 * side.thirds; /* 1/c^2 */
+    const real less = s.dilation * side.density - ((real)2 / 3 * turn + (real)1 / 3 * squared * square) * squared;
+    const real rest = 2 * b * less * inverse;
     *all += rest;
     *g += rest - 2 * b;
 #pragma unroll
@@ -261,7 +291,7 @@ static __device__ __forceinline__ void add_second(const cuda_march &m, float sec
 #pragma unroll
         for (int q = 0; q < 3; q++) {
             const int r = (q + 1) % 3, t = (q + 2) % 3;
-            float n = side.face * ((i == q ? trace : 0) - s.h[q][i]);
+            real n = side.face * ((i == q ? trace : 0) - s.h[q][i]);
             n += f[j][r] * s.g[k][t];
             n += f[k][t] * s.g[j][r];
             n -= f[j][t] * s.g[k][r];
@@ -273,10 +303,10 @@ static __device__ __forceinline__ void add_second(const cuda_march &m, float sec
 
 /* What p and its coefficients have of what is more than the neo-Hookean form. */
 template <march_control K>
-static __device__ __forceinline__ void push_begun(const cuda_march &m, const tissue<K> &of, const stretch &s,
-                                                  float *all, float *own, float *g, float p[3][3])
+static __device__ __forceinline__ void push_begun(const cuda_march<real> &m, const tissue<K> &of, const stretch &s,
+                                                  real *all, real *own, real *g, real p[3][3])
 {
-    float both = 0;
+    real both = 0;
 #pragma unroll
     for (int i = 0; i < 9; i++)
         p[i / 3][i % 3] = 0;
@@ -300,18 +330,18 @@ static __device__ __forceinline__ void push_begun(const cuda_march &m, const tis
 
 /* V P L, by `stress`' formula, scale being its mu J^-5/3; no cell: 0. */
 template <march_control K>
-static __device__ __forceinline__ void push_of(const cuda_march &m, const tissue<K> &of, float scale, const stretch &s,
-                                               bool is, float p[3][3])
+static __device__ __forceinline__ void push_of(const cuda_march<real> &m, const tissue<K> &of, real scale,
+                                               const stretch &s, bool is, real p[3][3])
 {
-    const float pressure = is ? of.hold.press * s.dilation : 0;
-    float all = pressure + scale * (s.dilation * m.side[0].density - s.third), own = scale * s.j;
-    float g = pressure - scale * (1 + s.third);
+    const real pressure = is ? of.hold.press * s.dilation : 0;
+    real all = pressure + scale * (s.dilation * m.side[0].density - s.third), own = scale * s.j;
+    real g = pressure - scale * (1 + s.third);
     constexpr bool begun = march_kind<K>::FORM == FORM_MOONEY_RIVLIN || march_kind<K>::FAMILIES > 0;
     if constexpr (begun)
         push_begun<K>(m, of, s, &all, &own, &g, p);
 #pragma unroll
     for (int i = 0; i < 3; i++) {
-        const float column = own * squares_of<K>(m, i);
+        const real column = own * squares_of<K>(m, i);
 #pragma unroll
         for (int a = 0; a < 3; a++)
             p[a][i] = (begun ? p[a][i] + column * s.h[a][i] : column * s.h[a][i]) + g * s.g[a][i];
@@ -321,9 +351,9 @@ static __device__ __forceinline__ void push_of(const cuda_march &m, const tissue
 
 /* F'^-T; no cell: nothing. */
 template <march_control K>
-static __device__ __forceinline__ void inverse_of(const cuda_march &m, const stretch &s, float to[3][3])
+static __device__ __forceinline__ void inverse_of(const cuda_march<real> &m, const stretch &s, real to[3][3])
 {
-    const float inverse = m.side[0].density * near_inverse(s.j);
+    const real inverse = m.side[0].density * power_of<3>(s);
 #pragma unroll
     for (int i = 0; i < 3; i++)
 #pragma unroll
@@ -332,16 +362,16 @@ static __device__ __forceinline__ void inverse_of(const cuda_march &m, const str
 }
 
 /* Of a law, by hourglass_numbers' formulas. */
-static __device__ __forceinline__ march_hold hold_of(const cuda_march &m, float mu, float bulk)
+static __device__ __forceinline__ march_hold<real> hold_of(const cuda_march<real> &m, real mu, real bulk)
 {
-    const float least = 1e-30f, torsion = m.volume * m.weight * (1.f / 3) * mu, twice = 2 * torsion;
-    march_hold k;
-    k.log_mu = near_log2(m.weight * mu);
+    const real least = (real)1e-30, torsion = m.volume * m.weight * ((real)1 / 3) * mu, twice = 2 * torsion;
+    march_hold<real> k;
+    k.mu = held_mu(m.weight * mu);
     k.press = m.weight * m.side[0].density * bulk;
-    k.coupling = twice * (bulk - 2.f / 3 * mu) * near_inverse(fmaxf(bulk + 4.f / 3 * mu, least));
+    k.coupling = twice * (bulk - (real)2 / 3 * mu) * near_inverse(fmax(bulk + (real)4 / 3 * mu, least));
     k.bending = k.coupling + twice;
     k.torsion = torsion;
-    k.corner = 3 * torsion * bulk * near_inverse(fmaxf(3 * bulk + mu, least));
+    k.corner = 3 * torsion * bulk * near_inverse(fmax(3 * bulk + mu, least));
 #pragma unroll
     for (int a = 0; a < 3; a++)
         k.own[a] = m.side[a].own * torsion;
@@ -349,11 +379,11 @@ static __device__ __forceinline__ march_hold hold_of(const cuda_march &m, float 
 }
 
 /* Of a family: k1, k2, kappa, angle. */
-static __device__ __forceinline__ march_family family_of(const cuda_march &m, const float k[4])
+static __device__ __forceinline__ march_family<real> family_of(const cuda_march<real> &m, const real k[4])
 {
-    const float log2_e = 1.4426950408889634f, around = 3 * k[2], along = 1 - around;
+    const real log2_e = (real)1.4426950408889634, around = 3 * k[2], along = 1 - around;
     float sine, cosine;
-    near_turn(k[3], &sine, &cosine);
+    near_turn((float)k[3], &sine, &cosine);
     return {2 * m.weight * k[0],
             k[1] * log2_e,
             FIBRE_CAP * log2_e,
@@ -366,24 +396,24 @@ static __device__ __forceinline__ march_family family_of(const cuda_march &m, co
 }
 
 /* Of a special cell, by hold_of; c: what march_cell has of its law beside mu. */
-static __device__ __forceinline__ march_more more_of(const cuda_march &m, float mu, const float c[4])
+static __device__ __forceinline__ march_more<real> more_of(const cuda_march<real> &m, real mu, const real c[4])
 {
-    const float inverse = near_inverse(fmaxf(mu, 1e-30f)), slope[MARCH_POWERS] = {mu, c[0], c[1], c[2], c[3]};
-    march_more to;
-    float three = 1;
+    const real inverse = near_inverse(fmax(mu, (real)1e-30)), slope[MARCH_POWERS] = {mu, c[0], c[1], c[2], c[3]};
+    march_more<real> to;
+    real three = 1;
 #pragma unroll
     for (int k = 0; k < MARCH_POWERS; three *= 3, k++) {
         to.slope[k] = m.weight * three * slope[k];
         if (k == 0)
             continue;
         to.shear[k - 1] = (2 * k + 1) * three * slope[k] * inverse;
-        to.rise[k - 1] = k * (1.f / 3) * m.side[0].density * to.shear[k - 1];
+        to.rise[k - 1] = k * ((real)1 / 3) * m.side[0].density * to.shear[k - 1];
     }
     return to;
 }
 
 /* Of a plain cell, but for directions. */
-template <march_control K> static __device__ __forceinline__ tissue<K> plain_tissue(const cuda_march &m)
+template <march_control K> static __device__ __forceinline__ tissue<K> plain_tissue(const cuda_march<real> &m)
 {
     tissue<K> of;
     of.hold = m.held;
@@ -394,16 +424,16 @@ template <march_control K> static __device__ __forceinline__ tissue<K> plain_tis
 
 /* law: the first numbers of `cell`, a special one. */
 template <march_control K>
-static __device__ __forceinline__ void special_tissue(const cuda_march &m, const march_cell &cell, float4 law,
-                                                      tissue<K> *to)
+static __device__ __forceinline__ void special_tissue(const cuda_march<real> &m, const cuda_march_cell<real> &cell,
+                                                      real4 law, tissue<K> *to)
 {
     to->hold = hold_of(m, law.x, law.y);
     if constexpr (march_kind<K>::FORM == FORM_MOONEY_RIVLIN) {
-        to->hold.log_mu = near_log2(m.weight * (law.x - law.z));
+        to->hold.mu = held_mu(m.weight * (law.x - law.z));
         to->more.slope[0] = m.weight * law.z;
     }
     if constexpr (march_kind<K>::FORM == FORM_FIRST) {
-        const float c[4] = {law.z, cell.more[0], cell.more[1], cell.more[2]};
+        const real c[4] = {law.z, cell.more[0], cell.more[1], cell.more[2]};
         to->more = more_of(m, law.x, c);
     }
     if constexpr (march_kind<K>::FAMILIES > 0)

@@ -258,13 +258,14 @@ static int march_take(cuda_state *s, bool *takes, err *e)
     const march_control control = march_control_for(s->p, march_families_of(s->p));
     if (control == MARCH_CONTROLS)
         return 0;
-    if (CUDA_TRY(cuda_march_slots(control, s->p->cut.count > 0, &slots)))
+    if (CUDA_TRY(cuda_march_slots<real>(control, s->p->cut.count > 0, &slots)))
         return -1;
     if (!slots)
         return 0;
     if (march_make(&s->march, s->p, slots, e))
         return -1;
     *takes = s->march.units > 0 && s->march.units < UINT32_MAX / (TABLE_STEPS + 1); /* units of a launch are counted */
+    *takes = *takes && (SINGLE || march_pays(&s->march, s->tiles.cells, slots));
     s->walkers = s->march.units < slots ? s->march.units : slots;
     return *takes ? tiles_reorder(&s->tiles, s->march.order, e) : 0;
 }
@@ -273,61 +274,60 @@ static int march_take(cuda_state *s, bool *takes, err *e)
 static void march_arrange(cuda_state *s)
 {
     s->numbers = 4 * s->view.stride;
-    s->view.along = s->view.mass_along = 4;
+    s->view.along = s->view.mass_along = MARCH_ALONG;
     for (int a = 0; a < 3; a++)
-        s->view.offset[s->march.axis[a]] = a;
+        s->view.offset[s->march.axis[a]] = march_offset(a, s->view.stride);
 }
 
 /* Words next to the velocities, for keep_near; its nodes have their masses themselves. */
 static void march_list(cuda_state *s, const cuda_numbers *numbers, card_layout *l)
 {
-    (void)numbers;
     const march *m = &s->march;
-    cuda_march *w = &s->walk;
+    cuda_march<real> *w = &s->walk;
     card_layout_copy(l, &w->word, m->word, (m->layers + MARCH_AHEAD) * MARCH_WORDS);
     card_layout_add(l, &w->done, m->units + 1);
     card_layout_copy(l, &w->unit, m->unit, m->units);
     card_layout_copy(l, &w->near, m->near, m->units * m->nears);
     card_layout_copy(l, &w->detail, m->detail, m->layers + MARCH_AHEAD);
     card_layout_copy(l, &w->which, m->which, m->details * MARCH_THREADS);
-    card_layout_copy(l, &w->cell, m->cell, m->cells);
+    card_layout_copy(l, &w->cell, numbers->march_cell, m->cells);
     card_layout_copy(l, &w->cut, m->cuts ? m->cut : NULL, m->cuts);
     card_layout_copy(l, &w->tip, m->tip, 8 * m->tips);
     card_layout_copy(l, &w->along, (const uint2 *)m->along, m->families ? march_along_tips(m) + 8 * m->tips : 0);
 }
 
 /* What a law has beside the neo-Hookean one. Returns the mu that goes with J^-5/3. */
-static double more_plain(const tled_problem *p, const tled_law *law, double weight, march_more *to)
+static double more_plain(const tled_problem *p, const tled_law *law, double weight, march_more<real> *to)
 {
     if (p->form == FORM_MOONEY_RIVLIN) {
-        to->slope[0] = (float)(2 * weight * law->c[1]);
+        to->slope[0] = (real)(2 * weight * law->c[1]);
         return 2 * law->c[0];
     }
     double three = 1, density = 1 / (64 * p->side[0] * p->side[1] * p->side[2]);
     for (int k = 0; p->form == FORM_FIRST && k < MARCH_POWERS; three *= 3, k++) {
-        to->slope[k] = (float)(2 * (k + 1) * weight * law->c[k] * three);
+        to->slope[k] = (real)(2 * (k + 1) * weight * law->c[k] * three);
         if (k == 0)
             continue;
         const double shear = (k + 1) * (2 * k + 1) * law->c[k] / law->c[0] * three;
-        to->shear[k - 1] = (float)shear;
-        to->rise[k - 1] = (float)(k * shear / 3 * density);
+        to->shear[k - 1] = (real)shear;
+        to->rise[k - 1] = (real)(k * shear / 3 * density);
     }
     return law->mu;
 }
 
-static void family_plain(const march *m, const tled_problem *p, double weight, march_family *to)
+static void family_plain(const march *m, const tled_problem *p, double weight, march_family<real> *to)
 {
     const fibre_numbers *of = &p->fibres.of[m->plain];
     const double square = 16 * p->side[0] * p->side[0], along = 1 - 3 * of->kappa;
-    *to = {(float)(2 * weight * march_stiffness(m, of)),
-           (float)(of->k2 * M_LOG2E),
-           (float)(FIBRE_CAP * M_LOG2E),
-           (float)(3 * of->kappa),
-           (float)(along / square),
-           (float)of->kappa,
-           (float)(along * sqrt(square)),
-           (float)cos(of->angle),
-           (float)sin(of->angle)};
+    *to = {(real)(2 * weight * march_stiffness(m, of)),
+           (real)(of->k2 * M_LOG2E),
+           (real)(FIBRE_CAP * M_LOG2E),
+           (real)(3 * of->kappa),
+           (real)(along / square),
+           (real)of->kappa,
+           (real)(along * sqrt(square)),
+           (real)cos(of->angle),
+           (real)sin(of->angle)};
 }
 
 /* Of plain cells, under physical control, in a unit of force by which their bending is 1. */
@@ -337,21 +337,22 @@ static void hold_plain(cuda_state *s)
     const tled_volume *plain = &p->volume[s->march.plain];
     const double *held = plain->law.hourglass, volume = p->side[0] * p->side[1] * p->side[2];
     const double unit = volume * held[HOURGLASS_BENDING], weight = MARCH_LAW / unit, by = volume / unit;
-    march_hold *to = &s->walk.held;
-    to->log_mu = (float)log2(weight * more_plain(p, &plain->law, weight, &s->walk.more));
-    to->press = (float)(weight * plain->law.bulk / (64 * volume));
+    march_hold<real> *to = &s->walk.held;
+    const double mu = weight * more_plain(p, &plain->law, weight, &s->walk.more);
+    to->mu = (real)(SINGLE ? log2(mu) : mu);
+    to->press = (real)(weight * plain->law.bulk / (64 * volume));
     if (p->fibres.of)
         family_plain(&s->march, p, weight, &s->walk.family);
     to->bending = 1;
-    to->coupling = (float)(by * held[HOURGLASS_COUPLING]);
-    to->torsion = (float)(by * held[HOURGLASS_TORSION]);
-    to->corner = (float)(by * held[HOURGLASS_CORNER]);
+    to->coupling = (real)(by * held[HOURGLASS_COUPLING]);
+    to->torsion = (real)(by * held[HOURGLASS_TORSION]);
+    to->corner = (real)(by * held[HOURGLASS_CORNER]);
     for (int a = 0; a < 3; a++) {
         to->own[a] = s->walk.side[a].own * to->torsion;
-        s->walk.area[a] = (float)(volume / (4 * p->side[s->march.axis[a]]) / unit);
+        s->walk.area[a] = (real)(volume / (4 * p->side[s->march.axis[a]]) / unit);
     }
-    s->walk.force = (float)unit;
-    s->walk.weight = (float)weight;
+    s->walk.force = (real)unit;
+    s->walk.weight = (real)weight;
 }
 
 /* What a march's kernels see beside its lists. */
@@ -360,10 +361,10 @@ static void march_fill(cuda_state *s)
     const tled_problem *p = s->p;
     const tled_volume *plain = &p->volume[s->march.plain];
     const int *axis = s->march.axis;
-    cuda_march *w = &s->walk;
+    cuda_march<real> *w = &s->walk;
     const double law[3] = {plain->law.c[0], plain->law.c[1], plain->law.hourglass[HOURGLASS_K]};
     const double volume = p->side[0] * p->side[1] * p->side[2];
-    s->view.mass_inverse = s->field[TLED_DISPLACEMENT] + 3;
+    s->view.mass_inverse = s->field[TLED_DISPLACEMENT] + march_offset(3, s->view.stride);
     w->ticket = w->done + s->march.units;
     w->nears = (int32_t)s->march.nears;
     w->units = (int32_t)s->march.units;
@@ -371,24 +372,23 @@ static void march_fill(cuda_state *s)
     w->specials = s->march.cells;
     w->cuts = (int32_t)s->march.cuts;
     w->tip_along = w->along ? w->along + march_along_tips(&s->march) : NULL;
-    static_assert(sizeof w->v == sizeof s->view, "views differ by what they point to alone");
-    memcpy(&w->v, &s->view, sizeof w->v);
+    w->v = s->view;
     for (int a = 0; a < 3; a++) {
         const double side = p->side[axis[a]], width = 4 * side;
         const double beside = 4 * p->side[axis[(a + 1) % 3]], across = 4 * p->side[axis[(a + 2) % 3]];
         w->axis[a] = axis[a];
-        w->law[a] = (float)law[a];
-        w->slope[a] = (float)(1 / (4 * side));
-        w->area[a] = (float)(volume / (4 * side));
-        w->side[a].width = (float)width;
-        w->side[a].face = (float)(beside * across);
-        w->side[a].thirds = (float)(1 / (3 * width * width));
-        w->side[a].density = (float)(1 / (64 * volume));
-        w->side[a].squares = (float)(64 * volume / (width * width));
-        w->side[a].own = (float)(width * width * (1 / (beside * beside) + 1 / (across * across)) - 1);
+        w->law[a] = (real)law[a];
+        w->slope[a] = (real)(1 / (4 * side));
+        w->area[a] = (real)(volume / (4 * side));
+        w->side[a].width = (real)width;
+        w->side[a].face = (real)(beside * across);
+        w->side[a].thirds = (real)(1 / (3 * width * width));
+        w->side[a].density = (real)(1 / (64 * volume));
+        w->side[a].squares = (real)(64 * volume / (width * width));
+        w->side[a].own = (real)(width * width * (1 / (beside * beside) + 1 / (across * across)) - 1);
     }
     w->force = 1;
-    w->volume = (float)(64 * volume);
+    w->volume = (real)(64 * volume);
     if (p->control.kind == HOURGLASS_PHYSICAL)
         hold_plain(s);
 }
@@ -426,30 +426,30 @@ static int march_begin(cuda_state *s, err *e)
 }
 
 /* What a march does in a pass: v = (keep v + half a) slow where a step begins, and so on. */
-static cuda_march_kind kind_of(const cuda_state *s, const tled_plan *plan, int what)
+static cuda_march_kind<real> kind_of(const cuda_state *s, const tled_plan *plan, int what)
 {
     const node_factors f = node_factors_of(1 / plan->rate, plan->damping);
     const bool begins = what & PASS_BEGIN, ends = what & PASS_FINISH;
     const real keep = (begins ? f.slow : 1) * (ends ? f.keep : 1);
     const real push = begins && ends ? f.dt * f.slow : begins ? f.half * f.slow : ends ? f.half : 0;
-    return {(float)keep, (float)(push * s->walk.force), begins ? (float)f.dt : 0, (float)push, what};
+    return {(real)keep, (real)(push * s->walk.force), begins ? (real)f.dt : 0, (real)push, what};
 }
 
 /* `passes` passes in one launch. first: what the first does; ends: the last leaves the internal forces. */
 static int march_on(cuda_state *s, const tled_plan *plan, const double *now, int64_t passes, int first, bool ends,
                     err *e)
 {
-    const cuda_march_pass p = {{(float4 *)s->field[TLED_DISPLACEMENT], (float4 *)s->spare},
-                               (float4 *)s->field[TLED_VELOCITY],
-                               now,
-                               {kind_of(s, plan, first), kind_of(s, plan, PASS_BEGIN | PASS_FINISH),
-                                kind_of(s, plan, PASS_FINISH | PASS_INTERNAL)},
-                               3 * (int32_t)s->p->script->curves,
-                               (int32_t)passes,
-                               ends,
-                               first == (PASS_BEGIN | PASS_FINISH),
-                               s->walked + 1,
-                               s->tickets};
+    const cuda_march_pass<real> p = {{(float4 *)s->field[TLED_DISPLACEMENT], (float4 *)s->spare},
+                                     (float4 *)s->field[TLED_VELOCITY],
+                                     now,
+                                     {kind_of(s, plan, first), kind_of(s, plan, PASS_BEGIN | PASS_FINISH),
+                                      kind_of(s, plan, PASS_FINISH | PASS_INTERNAL)},
+                                     3 * (int32_t)s->p->script->curves,
+                                     (int32_t)passes,
+                                     ends,
+                                     first == (PASS_BEGIN | PASS_FINISH),
+                                     s->walked + 1,
+                                     s->tickets};
     const march_control control = march_control_for(s->p, s->march.families);
     if (card_check(cuda_march_start(control, &s->walk, &p, s->walkers, s->stream), "the start of passes", s->step, e))
         return -1;
@@ -473,7 +473,7 @@ static int march_internal(cuda_state *s, const tled_plan *here, const double *no
 
 static int march_from_rows(cuda_state *s, real *to, const real *from, err *e)
 {
-    return CUDA_TRY(cuda_march_unpack(&s->walk, (const float *)from, (float4 *)to, s->stream));
+    return CUDA_TRY(cuda_march_unpack(&s->walk, from, (float4 *)to, s->stream));
 }
 
 static int64_t march_computed(const cuda_state *s)
@@ -489,10 +489,7 @@ static void march_end(cuda_state *s)
 
 /* ---- the table, and the choice */
 
-enum {
-    TILES_FORMS = (1 << FORM_STEPPED) - 1,
-    MARCH_FORMS = sizeof(real) == sizeof(float) ? march_forms() : 0 /* in single precision alone */
-};
+enum { TILES_FORMS = (1 << FORM_STEPPED) - 1, MARCH_FORMS = march_forms() };
 
 /* The preferred first. What is left takes the last. */
 static const cuda_method cuda_methods[] = {

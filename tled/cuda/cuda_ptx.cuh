@@ -50,6 +50,30 @@ static __device__ __forceinline__ void shared_store(uint32_t at, float x, float 
     asm volatile("st.shared.v4.f32 [%0], {%1, %2, %3, %4};" ::"r"(at), "f"(x), "f"(y), "f"(z), "f"(any) : "memory");
 }
 
+static __device__ __forceinline__ double2 shared_pair(uint32_t at)
+{
+    double2 x;
+    asm volatile("ld.shared.v2.f64 {%0, %1}, [%2];" : "=d"(x.x), "=d"(x.y) : "r"(at) : "memory");
+    return x;
+}
+
+static __device__ __forceinline__ void shared_pair_store(uint32_t at, double x, double y)
+{
+    asm volatile("st.shared.v2.f64 [%0], {%1, %2};" ::"r"(at), "d"(x), "d"(y) : "memory");
+}
+
+static __device__ __forceinline__ double shared_double(uint32_t at)
+{
+    double x;
+    asm volatile("ld.shared.f64 %0, [%1];" : "=d"(x) : "r"(at) : "memory");
+    return x;
+}
+
+static __device__ __forceinline__ void shared_double_store(uint32_t at, double x)
+{
+    asm volatile("st.shared.f64 [%0], %1;" ::"r"(at), "d"(x) : "memory");
+}
+
 /* ---- what is read once a pass: the cache keeps other things */
 
 static __device__ __forceinline__ uint2 load_once(const uint2 *from)
@@ -204,6 +228,16 @@ static __device__ __forceinline__ float near_exp2(float x)
     float y;
     asm("ex2.approx.ftz.f32 %0, %1;" : "=f"(y) : "f"(x));
     return y;
+}
+
+/* In double precision, to some 1e-16 of the answer, of x that single precision has room for: two steps of Newton's from
+ * the card's 20 bits. */
+static __device__ __forceinline__ double near_inverse(double x)
+{
+    double y;
+    asm("rcp.approx.ftz.f64 %0, %1;" : "=d"(y) : "d"(x));
+    y = fma(y, fma(-x, y, 1.), y);
+    return fma(y, fma(-x, y, 1.), y);
 }
 
 #endif

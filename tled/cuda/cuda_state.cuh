@@ -40,9 +40,10 @@ typedef struct cuda_numbers {
     cuda_mixed *mixture;
     cuda_fibres<real> *fibres; /* as, until the struct ends, of models with fibres or cut elements; else NULL */
     cuda_fibres<double> *fibres_looked_at;
-    real *family, *mixfamily; /* or NULL */
-    cuda_slider *slider;      /* or NULL, as is: */
-    double *position;         /* of nodes, for a probe */
+    real *family, *mixfamily;          /* or NULL */
+    cuda_slider *slider;               /* or NULL, as is: */
+    double *position;                  /* of nodes, for a probe */
+    cuda_march_cell<real> *march_cell; /* the march's; or NULL */
 } cuda_numbers;
 
 /* Passes that follow each other, of those of `count` steps: what_of says what each does. */
@@ -87,7 +88,7 @@ struct tled_state {
     const cuda_fibres<double> *fibres; /* of looks */
     element_shape shape;
     struct march march;       /* where the method is that: */
-    cuda_march walk;          /* what its kernels see */
+    cuda_march<real> walk;    /* what its kernels see */
     int64_t walkers;          /* blocks of it */
     uint32_t walked, tickets; /* passes of it, and units of all of them, and one more a block */
     char *memory;             /* of the card: all arrays below but for `frame` and `saved_internal` */
@@ -414,6 +415,24 @@ static cuda_slider *make_sliders(const cuda_state *s, err *e)
     return made;
 }
 
+/* The march's special cells, rounded where they go to steps in single precision. */
+static int make_march_cells(cuda_numbers *n, const march *m, err *e)
+{
+    n->march_cell = (cuda_march_cell<real> *)mem_array(m->cells, sizeof *n->march_cell, "the march", e);
+    for (int64_t i = 0; n->march_cell && i < m->cells; i++) {
+        const march_cell *c = &m->cell[i];
+        n->march_cell[i] = {(real)c->mu,
+                            (real)c->bulk,
+                            (real)c->second,
+                            (real)c->peak,
+                            {c->muscle[0], c->muscle[1]},
+                            (real)c->second_peak,
+                            {(real)c->more[0], (real)c->more[1], (real)c->more[2]},
+                            {(real)c->family[0], (real)c->family[1], (real)c->family[2], (real)c->family[3]}};
+    }
+    return n->march_cell ? 0 : -1;
+}
+
 static int make_numbers(cuda_numbers *n, const cuda_state *s, err *e)
 {
     const tled_problem *p = s->p;
@@ -426,7 +445,7 @@ static int make_numbers(cuda_numbers *n, const cuda_state *s, err *e)
         return -1;
     for (int64_t k = 0; k < p->nodes; k++)
         n->mass_inverse[k] = (real)(1 / p->mass[s->tiles.node[k]]);
-    if (make_weight(n, s, e))
+    if (make_weight(n, s, e) || make_march_cells(n, &s->march, e))
         return -1;
     for (int32_t i = 0; i < p->volumes; i++) {
         const tled_volume *v = &p->volume[i];
@@ -497,6 +516,7 @@ out:
     free(numbers.mixfamily);
     free(numbers.slider);
     free(numbers.position);
+    free(numbers.march_cell);
     return result;
 }
 

@@ -24,6 +24,12 @@ enum {
 #define MARCH_SPARSE 2.5
 #endif
 
+/* What decides for a march in double precision, in ns of one multiprocessor of an H200: an element of bricks (at 132 of
+ * them 79 to 96 ps measured, from 99,452 elements to 4 million), a unit of march_units.c's cost (predicted: twice single
+ * precision's, of which a million elements take 27 us), and what comes with each of a block's units: a layer more, and
+ * its start. */
+static const double brick_time = 11.2, cost_time = 144, unit_cost = 25;
+
 /* The box around a part, or a sheet of one, in columns and layers. */
 typedef struct box {
     int32_t low[3], high[3]; /* along the model's axes */
@@ -554,9 +560,17 @@ static int finish(cutter *c, const march_runs *runs, int64_t slots)
         march_tips_list(m, c->p, c->sheet, c->which, c->e) || march_tips_add(m, c->e) ||
         (c->sheet && march_turns_order(m, c->sheet, c->p->nodes, c->e)) || march_near_find(m, c->p->nodes, c->e))
         return -1;
+    m->cost = runs->all;
     m->computed += 8. * (double)m->tips / (double)c->p->elements;
     march_units_mark(m);
     return 0;
+}
+
+bool march_pays(const march *m, int64_t cells, int64_t slots)
+{
+    const double each = (m->cost + unit_cost * (double)m->units) / (double)slots;
+    const double longest = fmax(each, m->cost / (double)m->units + unit_cost);
+    return longest * cost_time < brick_time * (double)cells / (double)slots || MARCH_SPARSE > 1e6;
 }
 
 int march_make(march *m, const tled_problem *p, int64_t slots, err *e)

@@ -1,4 +1,4 @@
-/* A problem cut for a march through its lattice, as the CUDA executor takes it in single precision. The lattice is cut
+/* A problem cut for a march through its lattice, as the CUDA executor takes it in both precisions. The lattice is cut
  * into columns of 15 by 15 nodes, of which blocks of 16 by 16 threads go layer by layer along one axis: thread (i, j)
  * computes the cell whose low corner has place (i, j) in the column, and moves the node of that place. Places 1 to 15
  * are owned, 0 and 16 are of columns beside this one.
@@ -60,10 +60,10 @@ enum { MARCH_SECOND = 1 << 30 };
  * is what holds modes under isotropic control; else, of the Mooney-Rivlin form 2 c01, of `first` 4 c2, and `more` 6 c3,
  * 8 c4, 10 c5. */
 typedef struct march_cell {
-    float mu, bulk, second, peak; /* Pa; second: below; peak: of the first of: */
-    march_muscle muscle[2];       /* of its volumes, those that may contract */
-    float second_peak, more[3];
-    float family[4]; /* of fibres that resist being stretched: k1, k2, kappa, angle (rad) */
+    double mu, bulk, second, peak; /* Pa; second: below; peak: of the first of: */
+    march_muscle muscle[2];        /* of its volumes, those that may contract */
+    double second_peak, more[3];
+    double family[4]; /* of fibres that resist being stretched: k1, k2, kappa, angle (rad) */
 } march_cell;
 
 /* What a cut cell has besides (element_cut.h): means over its part of the coordinates along the march's axes, -1 to 1,
@@ -85,6 +85,7 @@ typedef struct march {
     int64_t layers, units, details, cells;
     int64_t nears;    /* a row of `near`, a multiple of 32 */
     double computed;  /* threads of warps with cells, over elements */
+    double cost;      /* of all layers, by march_units.c's measure */
     int32_t *order;   /* nodes: where each stands */
     uint32_t *word;   /* (layers + MARCH_AHEAD) x MARCH_WORDS */
     march_unit *unit; /* units: none where the problem is not suited */
@@ -125,5 +126,9 @@ static inline int march_word_of(int32_t i, int32_t j)
  * with e filled, and m to be freed all the same. */
 int march_make(march *m, const tled_problem *p, int64_t slots, err *e);
 void march_free(march *m);
+
+/* Whether a step in double precision is predicted to take less time so than in bricks that compute `cells` elements.
+ * slots: as above. */
+bool march_pays(const march *m, int64_t cells, int64_t slots);
 
 #endif

@@ -15,7 +15,7 @@ static void add_muscle(const march *m, const tled_volume *v, march_cell *to, con
     if (second)
         to->muscle[0].curve |= MARCH_SECOND;
     muscle->curve = (int32_t)v->contract;
-    *(second ? &to->second_peak : &to->peak) = (float)(share * v->peak);
+    *(second ? &to->second_peak : &to->peak) = share * v->peak;
     for (int a = 0; a < 3; a++)
         muscle->fibre[a] = fibre[m->axis[a]];
 }
@@ -23,16 +23,16 @@ static void add_muscle(const march *m, const tled_volume *v, march_cell *to, con
 /* share: of the cell, that is tissue. */
 static void put_law(const tled_problem *p, const tled_law *law, double share, march_cell *to)
 {
-    to->mu = (float)(share * law->mu);
-    to->bulk = (float)(share * law->bulk);
+    to->mu = share * law->mu;
+    to->bulk = share * law->bulk;
     if (p->control.kind == HOURGLASS_ISOTROPIC) {
-        to->second = (float)(share * law->hourglass[HOURGLASS_K]);
+        to->second = share * law->hourglass[HOURGLASS_K];
     } else if (p->form == FORM_MOONEY_RIVLIN) {
-        to->second = (float)(2 * share * law->c[1]);
+        to->second = 2 * share * law->c[1];
     } else if (p->form == FORM_FIRST) {
-        to->second = (float)(4 * share * law->c[1]);
+        to->second = 4 * share * law->c[1];
         for (int k = 0; k < 3; k++)
-            to->more[k] = (float)((2 * k + 6) * share * law->c[2 + k]);
+            to->more[k] = (2 * k + 6) * share * law->c[2 + k];
     }
 }
 
@@ -43,10 +43,10 @@ double march_stiffness(const march *m, const fibre_numbers *of)
 
 static void put_family(const march *m, const fibre_numbers *of, double share, march_cell *to)
 {
-    to->family[0] = (float)(share * march_stiffness(m, of));
-    to->family[1] = (float)of->k2;
-    to->family[2] = (float)of->kappa;
-    to->family[3] = (float)of->angle;
+    to->family[0] = share * march_stiffness(m, of);
+    to->family[1] = of->k2;
+    to->family[2] = of->kappa;
+    to->family[3] = of->angle;
 }
 
 /* Of the element's own volume; share: of the cell. What has no fibres has the plain ones, so that it is not special for

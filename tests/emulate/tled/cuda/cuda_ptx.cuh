@@ -12,6 +12,10 @@ float4 shared_load(uint32_t at);
 float shared_number(uint32_t at);
 void shared_number_store(uint32_t at, float x);
 void shared_store(uint32_t at, float x, float y, float z);
+double2 shared_pair(uint32_t at);
+void shared_pair_store(uint32_t at, double x, double y);
+double shared_double(uint32_t at);
+void shared_double_store(uint32_t at, double x);
 
 void send(uint32_t to, const float4 *from, bool is);
 static inline void send_both(uint32_t to, const float4 *from, bool is, uint32_t other_to, const float4 *other,
@@ -75,6 +79,10 @@ static inline void near_turn(float x, float *sine, float *cosine)
 static inline float near_exp2(float x)
 {
     return exp2f(x);
+}
+static inline double near_inverse(double x)
+{
+    return 1 / x;
 }
 
 #endif
