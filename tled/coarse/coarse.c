@@ -233,6 +233,7 @@ coarse *coarse_make(const tled_problem *fine, const model *m, err *e)
     if (!c)
         return NULL;
     c->fine = fine;
+    c->problem.threads = fine->threads;
     if (make_model(c, m, e) || make_script(c, e) ||
         tled_problem_make(&c->problem, &c->m, &c->script, fine->control, e) || coarse_holds(c, e) ||
         coarse_loads(c, e)) {
