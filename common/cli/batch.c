@@ -189,7 +189,7 @@ static char *where(const char *path, err *e)
     char *target = path_target(path, &ignored);
     const char *of = target ? target : path;
     const size_t n = path_folder(of);
-    char *folder = path_join(n ? of : ".", n ? n : 1, "", e), *to = NULL;
+    char *folder = n ? path_join(of, n, "", e) : path_join(".", 1, "", e), *to = NULL;
     if (folder && realpath(folder, real)) {
         const size_t size = strlen(real) + strlen(of + n) + 2;
         to = mem_array((int64_t)size, 1, "a path", e);

@@ -3,7 +3,7 @@
 
 EMULATE_CXX ?= $(if $(filter x86_64,$(shell uname -m)),$(shell command -v g++))
 EMULATE_CU := $(addprefix tled/cuda/,cuda_march cuda_single cuda_double cuda_look) common/solve/card $(addprefix tests/emulate/,wrong any_single any_double)
-EMULATE_OBJ := $(addprefix $(BUILD)/emulate/,$(addsuffix .o,$(EMULATE_CU) tled/cuda/cuda_march_double fibres shadow telling streams tled/cuda/march)) \
+EMULATE_OBJ := $(addprefix $(BUILD)/emulate/,$(addsuffix .o,$(EMULATE_CU) tled/cuda/cuda_march_double fibres shadow shared telling streams tled/cuda/march)) \
 	$(addprefix $(BUILD)/tled/cuda/,march_units.o march_cells.o march_near.o march_tips.o) \
 	$(addprefix $(BUILD)/tled/tiles/,bricks.o places.o lattice_sheet.o tile_parts.o tile_split.o tiles.o)
 EMULATE_FLAGS = -std=c++17 -g -Wall $(WERROR) -Itests/emulate $(CPPFLAGS) -MMD -MP

@@ -35,7 +35,7 @@ int main(void)
         executor_ahead_start(&ahead, table, device[i], i > 2 ? &contact : &nothing);
         executor_ahead_wait(&ahead);
         executor_ahead_wait(&ahead);
-        ok(looks == (i < 2), "-d %s%s: %s ahead", device[i], i > 2 ? " with contact" : "", looks ? "ready" : "nothing");
+        ok(looks == (i < 2), "-d %s%s: %d looked ahead", device[i], i > 2 ? " with contact" : "", looks);
         ok(!looks || !pthread_equal(by, pthread_self()), "by a thread of its own");
     }
     return done_testing();

@@ -1,8 +1,8 @@
 /* The step by a march: see march.h. Compiled twice, in single precision and, with MARCH_DOUBLE, in double: its blocks
- * have as many threads then, of twice the registers, and a multiprocessor has one where it has two in single. A thread keeps what the face between two elements has of
- * modes (the mean, x, y and xy of each component, sums and differences over four corners) and of forces on them;
- * so an element takes one new face, and a node the sums of one. Compiled with fused multiplications and
- * additions: its bytes are not the processor's.
+ * have as many threads then, of twice the registers, and a multiprocessor has one where it has two in single. A thread
+ * keeps what the face between two elements has of modes (the mean, x, y and xy of each component, sums and differences
+ * over four corners) and of forces on them; so an element takes one new face, and a node the sums of one. Compiled with
+ * fused multiplications and additions: its bytes are not the processor's.
  *
  * Layer c of cells lies between layers c and c + 1 of nodes. At its end a thread sends for displacements of layer c + 7
  * and velocities of layer c + 3, as one group of copies to shared memory. It waits for that group in layer c + 4, after

@@ -58,7 +58,8 @@ template <march_control K> struct tissue {
 /* As J, of which all that depends on it is 0: a power of it, and what it divides. */
 #define NO_CELL 3e38f
 
-/* x^(-1/3), in double precision, to some 1e-16 of it. With h = 1 - x y^3, x^(-1/3) = y (1 - h)^(-1/3) = y (1 + h/3 + 2/9 h^2 + ...); h is some 1e-6. */
+/* x^(-1/3), in double precision, to some 1e-16 of it. With h = 1 - x y^3, which is some 1e-6, it is
+ * y (1 - h)^(-1/3) = y (1 + h/3 + 2/9 h^2 + ...). */
 static __device__ __forceinline__ double near_root_of_inverse(double x)
 {
     const double y = near_exp2(near_log2((float)x) * (-1.f / 3)), h = fma(-x * y, y * y, 1.);
@@ -73,7 +74,11 @@ template <int N> static __device__ __forceinline__ real power_of(const stretch &
     if constexpr (SINGLE)
         return near_exp2(near_log2((float)s.j) * (-(float)N / 3));
     const real square = s.root * s.root;
-    return N == 2 ? square : N == 3 ? square * s.root : N == 4 ? square * square : square * s.root * square;
+    if constexpr (N == 2)
+        return square;
+    if constexpr (N == 3)
+        return square * s.root;
+    return N == 4 ? square * square : square * s.root * square;
 }
 
 /* What march_hold has for a modulus. */
@@ -160,8 +165,10 @@ static __device__ __forceinline__ stretch stretch_of(const cuda_march<real> &m, 
         s.g[i][k] = s.h[j][i] * s.h[k][j] - s.h[k][i] * f[j];
     }
     s.dilation = f[0] * s.g[0][0] + m.side[0].face * s.h[0][0] + s.h[0][1] * s.g[0][1] + s.h[0][2] * s.g[0][2];
-    s.j = is ? 1 + s.dilation * m.side[0].density : SINGLE ? (real)NO_CELL : 1;
-    s.root = SINGLE ? 0 : is ? near_root_of_inverse((double)s.j) : 0;
+    s.j = is ? 1 + s.dilation * m.side[0].density : NO_CELL;
+    s.root = 0;
+    if constexpr (!SINGLE)
+        s.root = is ? near_root_of_inverse(s.j) : 0;
     s.third = third_of<K>(m, s.h, wide, f);
     return s;
 }

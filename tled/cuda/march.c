@@ -24,10 +24,10 @@ enum {
 #define MARCH_SPARSE 2.5
 #endif
 
-/* What decides for a march in double precision, in ns of one multiprocessor of an H200: an element of bricks (at 132 of
- * them 79 to 96 ps measured, from 99,452 elements to 4 million), a unit of march_units.c's cost (predicted: twice single
- * precision's, of which a million elements take 27 us), and what comes with each of a block's units: a layer more, and
- * its start. */
+/* What decides for a march in double precision, in ns of one multiprocessor of an H200: an element of bricks (at 132
+ * of them 79 to 96 ps measured, from 99,452 elements to 4 million), a unit of march_units.c's cost (predicted: twice
+ * single precision's, of which a million elements take 27 us), and what comes with each of a block's units: a layer
+ * more, and its start. */
 static const double brick_time = 11.2, cost_time = 144, unit_cost = 25;
 
 /* The box around a part, or a sheet of one, in columns and layers. */
