@@ -43,7 +43,7 @@ endif
 MAIN_SRC := common/cli/tool.c common/cli/progress.c
 MAIN_OBJ := $(MAIN_SRC:%.c=$(BUILD)/%.o)
 LINK_LIB := $(addprefix common/link/,address.c socket.c igtl.c igtl_content.c igtl_reader.c)
-LIB_SRC := $(filter-out $(MAIN_SRC) common/cli/sinew.c common/results/sinew-results.c common/render/sinew-render.c common/place/sinew-register.c common/render/render_%,$(wildcard common/base/*.c common/physics/*.c common/cli/*.c common/model/*.c common/surface/*.c common/mesh/*.c common/place/*.c common/volume/*.c common/probe/*.c common/live/*.c) $(LINK_LIB) $(wildcard common/solve/*.c common/picture/*.c common/results/*.c common/render/*.c))
+LIB_SRC := $(filter-out $(MAIN_SRC) common/cli/sinew.c common/results/sinew-results.c common/render/sinew-render.c common/place/sinew-register.c common/render/render_%,$(wildcard common/base/*.c common/physics/*.c common/cli/*.c common/model/*.c common/frames/*.c common/surface/*.c common/mesh/*.c common/place/*.c common/volume/*.c common/probe/*.c common/live/*.c) $(LINK_LIB) $(wildcard common/solve/*.c common/picture/*.c common/results/*.c common/render/*.c))
 LIB_OBJ := $(LIB_SRC:%.c=$(BUILD)/%.o)
 LIB := $(BUILD)/libsinew.a
 

@@ -78,11 +78,12 @@ typedef struct mover {
     bound b;
     motion moves;
     bone bone;
-    double scale;          /* metres in the OBJ's unit */
-    bool *held;            /* vertices: too far outside to be moved */
-    double *position;      /* vertices x 3, in the OBJ's unit */
-    double *normal;        /* normals x 3 */
-    char skin[MODEL_NAME]; /* the surface's name, where frames move it themselves; else "" */
+    double scale;                   /* metres in the OBJ's unit */
+    bool *held;                     /* vertices: too far outside to be moved */
+    double *position;               /* vertices x 3, in the OBJ's unit */
+    double *normal;                 /* normals x 3 */
+    char computed[MODEL_NAME + 20]; /* the array that a solver may have computed of the bound surface */
+    char skin[MODEL_NAME];          /* the surface's name, where frames move it themselves; else "" */
     pool *threads;
 } mover;
 
@@ -168,6 +169,17 @@ static int as_skin(mover *w, const model *m, const char *name, err *e)
     return 0;
 }
 
+/* The bound surface is known by its array: its name may be another than that of the file. */
+static void name_computed(mover *w, const model *m)
+{
+    char name[MODEL_NAME];
+    for (int at = 0; model_surface(m, &at, name, sizeof name);) {
+        const model_array *element = surface_part(m, name, "vertex.element");
+        if (element && element->i32 == w->b.element)
+            snprintf(w->computed, sizeof w->computed, "%s/vertex.displacement", name);
+    }
+}
+
 static int mover_open(mover *w, const tool *t, const model *m, const char *path, const struct options *o, double within,
                       err *e)
 {
@@ -184,6 +196,8 @@ static int mover_open(mover *w, const tool *t, const model *m, const char *path,
         (bound_find(&w->b, m, name, &w->file, w->scale, e) || bone_find(&w->bone, &w->b, m, e) ||
          motion_open(&w->moves, &w->b, model_count(m, "node"), model_count(m, "element"), e) || hold(w, t, within, e)))
         return -1;
+    if (!*w->skin)
+        name_computed(w, m);
     w->position = mem_array(3 * w->file.vertices, sizeof *w->position, "positions", e);
     w->normal = w->position ? mem_array(3 * w->file.normals, sizeof *w->normal, "normals", e) : NULL;
     w->threads = w->normal ? pool_create(threads, e) : NULL;
@@ -254,14 +268,32 @@ static int move_skin(mover *w, const frame *f, err *e)
     return 0;
 }
 
+/* By what the solver has computed of the bound surface (--frames surfaces), where the frame has no nodes. */
+static int move_computed(mover *w, const frame *f, err *e)
+{
+    const char *name = w->computed;
+    const model_array *u = frame_find(f, name);
+    if (!u)
+        return err_set(e, NULL, 0, "frame %lld has no node.displacement, and no %s; expected results of tled-run",
+                       (long long)f->index, name);
+    for (int64_t i = 0; i < 3 * w->file.vertices; i++) {
+        const double d = w->held[i / 3] ? 0 : u->f64[i];
+        w->position[i] = w->file.position[i] + d / w->scale;
+        if (!isfinite(w->position[i]))
+            return err_set(e, NULL, 0, "frame %lld moves vertex %lld to a place that is not finite",
+                           (long long)f->index, (long long)(i / 3));
+    }
+    normals_turn(&w->file, w->position, w->normal);
+    return 0;
+}
+
 static int move(mover *w, const frame *f, err *e)
 {
     if (*w->skin)
         return move_skin(w, f, e);
     const model_array *u = frame_find(f, "node.displacement");
     if (!u)
-        return err_set(e, NULL, 0, "frame %lld has no node.displacement; expected results of tled-run",
-                       (long long)f->index);
+        return move_computed(w, f, e);
     motion_set(&w->moves, u->f64, w->threads);
     bone_set(&w->bone, f);
     pool_run(w->threads, w->file.vertices, 1024, move_some, w);

@@ -293,7 +293,7 @@ SANITIZED = $(BUILD)/sanitize$(if $(filter no,$(AVX512)),-avx2)
 # Data races: what has threads, under ThreadSanitizer. (Embree, which is not built so, is seen from outside only.)
 .PHONY: tsan tsan-run
 TSAN = -O1 -g1 -fsanitize=thread -fno-omit-frame-pointer
-TSAN_UNIT = $(patsubst %,$(BUILD)/tests/unit/test_%,pool lines spnav frame_writer tled_step tled_run tled_live msds_run msds_live slice voxelise_voxels)
+TSAN_UNIT = $(patsubst %,$(BUILD)/tests/unit/test_%,pool lines spnav frame_writer frame_queue tled_step tled_run tled_live msds_run msds_live slice voxelise_voxels)
 tsan:
 	TSAN_OPTIONS=exitcode=99 SINEW_SANITIZED=1 REPEATS=1 $(MAKE) $(JOBS) BUILD=$(BUILD)/tsan BIN=$(BUILD)/tsan/bin CFLAGS='$(TSAN)' CUDA=no tsan-run
 tsan-run: all $(TSAN_UNIT)

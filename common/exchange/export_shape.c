@@ -82,15 +82,24 @@ static int move_surface(export_shape *x, const double *u, err *e)
     return x->displacement ? 0 : -1;
 }
 
+/* What a solver has computed of the surface, or NULL. */
+static const model_array *own_displacement(const export_shape *x, const frame *f)
+{
+    char name[MODEL_NAME + 20];
+    snprintf(name, sizeof name, "%s/vertex.displacement", x->s.name);
+    return f && x->is_surface ? frame_find(f, name) : NULL;
+}
+
 int export_shape_move(export_shape *x, const frame *f, err *e)
 {
-    const model_array *u = f ? frame_find(f, "node.displacement") : NULL;
+    const model_array *nodes = f ? frame_find(f, "node.displacement") : NULL;
+    const model_array *u = nodes ? nodes : own_displacement(x, f);
     free(x->displacement);
     x->displacement = NULL;
     x->f = f;
     if (!u)
         return 0;
-    if (x->is_surface)
+    if (x->is_surface && nodes)
         return move_surface(x, u->f64, e);
     x->displacement = mem_array(3 * x->points, sizeof *x->displacement, "displacements", e);
     if (!x->displacement)

@@ -151,7 +151,8 @@ static int check_moved(const job *j, err *e)
     if (!j->o->deformed || j->x.displacement)
         return 0;
     if (!frame_find(j->x.f, "node.displacement"))
-        return err_set(e, source_name(&j->s), 0, "--deformed: the frame has no node.displacement");
+        return err_set(e, source_name(&j->s), 0, "--deformed: the frame has no node.displacement%s",
+                       j->x.is_surface ? ", nor that of the surface" : "");
     return err_set(e, source_name(&j->s), 0, "--deformed: surface %s is not bound; expected a model from sinew bind",
                    j->o->surface);
 }

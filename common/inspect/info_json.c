@@ -65,7 +65,7 @@ static void put_array(const model_array *a, out *to)
     out_text(to, "    {");
     put_member("name", a->name, to);
     out_text(to, ", ");
-    put_member("type", model_type_name(a->type), to);
+    put_member("type", model_type_name(model_stored(a)), to);
     out_text(to, ", ");
     put_member("unit", a->unit, to);
     out_text(to, ", ");

@@ -142,7 +142,7 @@ static int put_nature(const query *q)
     else if (!strcmp(q->what, "columns"))
         out_format(q->to, "%d", (int)q->a->columns);
     else if (!strcmp(q->what, "type"))
-        out_text(q->to, model_type_name(q->a->type));
+        out_text(q->to, model_type_name(model_stored(q->a)));
     else if (!strcmp(q->what, "unit"))
         out_text(q->to, q->a->unit);
     else if (!strcmp(q->what, "axis"))

@@ -81,7 +81,7 @@ void info_put_number(double value, model_type from, out *to)
 
 void info_put_end(const model_array *a, const info_stats *s, bool max, out *to)
 {
-    const model_type type = info_is_vector(a) ? MODEL_F64 : a->type;
+    const model_type type = info_is_vector(a) ? MODEL_F64 : model_stored(a);
     if (a->type == MODEL_I64 && s->count)
         out_format(to, "%" PRId64, max ? s->max_i64 : s->min_i64);
     else
@@ -93,5 +93,5 @@ void info_put_value(const model_array *a, int64_t at, out *to)
     if (a->type == MODEL_I64)
         out_format(to, "%" PRId64, a->i64[at]);
     else
-        info_put_number(source_value(a, at), a->type, to);
+        info_put_number(source_value(a, at), model_stored(a), to);
 }

@@ -274,16 +274,17 @@ static void say_finding(diff *d, const model_array *a, const model_array *b, con
     out_text(d->to, "\n");
 }
 
-/* Whether the two can be compared value by value; says so where they cannot. */
-static bool alike(diff *d, const model_array *a, const model_array *b)
+/* Whether the two can be compared value by value; says so where they cannot. What is stored as f32 is compared with f64
+ * where a tolerance is given. */
+static bool alike(diff *d, const model_array *a, const model_array *b, bool roughly)
 {
-    if (a->type == b->type && a->columns == b->columns && a->rows == b->rows && !strcmp(a->unit, b->unit) &&
-        !strcmp(a->axis, b->axis))
+    if (a->type == b->type && (roughly || a->narrow == b->narrow) && a->columns == b->columns && a->rows == b->rows &&
+        !strcmp(a->unit, b->unit) && !strcmp(a->axis, b->axis))
         return true;
     say_place(d);
     out_format(d->to, "%s: %s %s %s %d, %" PRId64 " rows and %s %s %s %d, %" PRId64 " rows\n", a->name,
-               model_type_name(a->type), a->unit, a->axis, (int)a->columns, a->rows, model_type_name(b->type), b->unit,
-               b->axis, (int)b->columns, b->rows);
+               model_type_name(model_stored(a)), a->unit, a->axis, (int)a->columns, a->rows,
+               model_type_name(model_stored(b)), b->unit, b->axis, (int)b->columns, b->rows);
     return false;
 }
 
@@ -306,7 +307,7 @@ static int compare_array(diff *d, const model_array *a, const model_array *b, er
         say_texts(d, "array", one->name, left, b ? "" : NULL);
         return 0;
     }
-    if (!alike(d, a, b))
+    if (!alike(d, a, b, most_abs > 0 || most_rel > 0))
         return 0;
     d->compared++;
     finding f = compare_rows(a, b, most_abs, most_rel);

@@ -105,7 +105,7 @@ static int put_arrays(const model_arrays *list, bool meanings, out *to, err *e)
         const model_array *a = &list->v[i];
         const known *k = known_find(a->name);
         text_table_cell(t, "%s", a->name);
-        text_table_cell(t, "%s", model_type_name(a->type));
+        text_table_cell(t, "%s", model_type_name(model_stored(a)));
         text_table_count(t, a->columns);
         text_table_cell(t, "%s", a->axis);
         text_table_cell(t, "%s", a->unit);

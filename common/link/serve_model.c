@@ -158,19 +158,20 @@ static int put(serve_model *s, int device, uint64_t stamp, const frame *f, err *
 
 static int move(moved *m, const frame *f, err *e)
 {
-    const model_array *u = m->is_bound ? frame_find(f, "node.displacement") : skin_of(m, f);
+    const model_array *nodes = m->is_bound ? frame_find(f, "node.displacement") : NULL;
+    const model_array *u = nodes ? nodes : skin_of(m, f); /* or what the solver has computed of a bound one */
     if (!u)
         return err_set(e, NULL, 0,
                        "frame %" PRId64
-                       " does not say how surface %s moves; expected displacements of nodes, or of a skin",
+                       " does not say how surface %s moves; expected displacements of nodes, or of its vertices",
                        f->index, m->name);
-    if (m->is_bound) {
+    if (nodes) {
         motion_set(&m->moves, u->f64, NULL);
         bone_set(&m->bone, f);
     }
     for (int64_t v = 0; v < m->b.shape.vertices; v++) {
         double d[3], *to = m->place + 3 * v;
-        if (m->is_bound)
+        if (nodes)
             bone_displacement(&m->bone, &m->moves, v, d);
         else
             memcpy(d, u->f64 + 3 * v, sizeof d);

@@ -341,8 +341,27 @@ static void put_canonical(sink *k, model_type type, const unsigned char *bytes, 
     }
 }
 
+/* Doubles as floats: rounded some at a time, which stay in the cache. */
+static void put_narrow(sink *k, const model_array *a, bool finite)
+{
+    enum { SOME = 1 << 13 };
+    float some[SOME];
+    const int64_t n = a->rows * a->columns;
+    for (int64_t at = 0; at < n; at += SOME) {
+        const int64_t now = n - at < SOME ? n - at : SOME;
+        item_round(a->f64 + at, some, now);
+        if (!finite)
+            item_canonical(MODEL_F32, some, now);
+        put(k, some, (size_t)now * sizeof *some);
+    }
+}
+
 static void put_values(sink *k, const model_array *a, bool finite)
 {
+    if (a->narrow) {
+        put_narrow(k, a, finite);
+        return;
+    }
     size_t each = model_type_size(a->type), left = (size_t)(a->rows * a->columns) * each;
     const unsigned char *bytes = a->data;
     while (left) {
@@ -366,7 +385,7 @@ static uint64_t array_length(const model_array *a)
     int64_t n = a->rows * a->columns;
     uint64_t length = text_length(a->name) + text_length(a->unit) + text_length(a->axis) + 2 * sizeof(uint32_t);
     if (a->type != MODEL_STR)
-        return length + (uint64_t)n * model_type_size(a->type);
+        return length + (uint64_t)n * model_type_size(model_stored(a));
     for (int64_t i = 0; i < n; i++)
         length += text_length(a->str[i]);
     return length;
@@ -378,7 +397,7 @@ static void put_array(sink *k, const item *it)
     put_text(k, a->name);
     put_text(k, a->unit);
     put_text(k, a->axis);
-    put_u32(k, a->type);
+    put_u32(k, model_stored(a));
     put_u32(k, (uint32_t)a->columns);
     if (a->type != MODEL_STR)
         put_values(k, a, it->finite);

@@ -1,9 +1,12 @@
 #include "model/item.h"
 
+#include "base/mem.h"
 #include "model/check.h"
 #include "model/values.h"
 
+#include <float.h>
 #include <inttypes.h>
+#include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -109,4 +112,37 @@ bool item_canonical(model_type type, void *values, int64_t n)
         for (int64_t i = 0; i < n; i++)
             d[i] = d[i] == d[i] ? d[i] : quiet64;
     return false;
+}
+
+int item_widen(model_array *a, err *e)
+{
+    const int64_t n = a->rows * a->columns;
+    const float *from = a->f32;
+    double *to = a->data ? mem_array(n, sizeof *to, a->name, e) : NULL;
+    if (a->data && !to)
+        return -1;
+    for (int64_t i = 0; to && i < n; i++)
+        to[i] = (double)from[i];
+    free(a->data);
+    a->f64 = to;
+    a->type = MODEL_F64;
+    a->narrow = true;
+    return 0;
+}
+
+void item_round(const double *from, float *to, int64_t n)
+{
+    for (int64_t i = 0; i < n; i++)
+        to[i] = (float)from[i];
+}
+
+bool item_rounds(const model_array *a)
+{
+    const double most = (double)FLT_MAX;
+    int beyond = 0;
+    for (int64_t i = 0; i < a->rows * a->columns; i++) {
+        const double size = fabs(a->f64[i]);
+        beyond |= (size > most) & (size < INFINITY);
+    }
+    return !beyond;
 }

@@ -89,4 +89,13 @@ int item_hurries(const item_source *s, err *e);
  * finite. */
 bool item_canonical(model_type type, void *values, int64_t n);
 
+/* Makes doubles of an array of f32, which is then narrow (model.h); one without values stays so. -1 with e filled. */
+int item_widen(model_array *a, err *e);
+
+/* Rounds n doubles to the nearest floats. */
+void item_round(const double *from, float *to, int64_t n);
+
+/* Whether rounding leaves every finite number of an array finite. */
+bool item_rounds(const model_array *a);
+
 #endif

@@ -213,8 +213,8 @@ typedef struct known {
       "force of the tissue on it")                                                                                     \
     X("body.torque", MODEL_F64, "N.m", "body", 3, 3, KNOWN_FRAME, KNOWN_FINITE, 0, 0, "tled-run",                      \
       "torque of the tissue on it, about the mean of its nodes as they are now")                                       \
-    X("*/vertex.displacement", MODEL_F64, "m", "*/vertex", 3, 3, KNOWN_FRAME, KNOWN_FINITE, 0, 0, "msds-run",          \
-      "of a skin: displacement from rest")                                                                             \
+    X("*/vertex.displacement", MODEL_F64, "m", "*/vertex", 3, 3, KNOWN_FRAME, KNOWN_FINITE, 0, 0,                      \
+      "msds-run or tled-run", "of a skin, or a bound surface: displacement from rest")                                 \
     X("*/vertex.normal", MODEL_F64, "1", "*/vertex", 3, 3, KNOWN_FRAME, KNOWN_DIRECTION, 0, 0, "msds-run",             \
       "of a skin: unit normal as it is moved")
 

@@ -393,9 +393,8 @@ int model_set_text(model_array *a, int64_t at, const char *text, err *e)
     return 0;
 }
 
-void model_remove_all(model *m, bool goes(const model_array *a, const void *context), const void *context)
+static void remove_all(model_arrays *list, bool goes(const model_array *a, const void *context), const void *context)
 {
-    model_arrays *list = &m->arrays;
     int kept = 0, had = list->count;
     for (int i = 0; i < had; i++) {
         if (goes(&list->v[i], context))
@@ -406,6 +405,16 @@ void model_remove_all(model *m, bool goes(const model_array *a, const void *cont
     list->count = kept;
     if (kept < had)
         lookup_again(&list->index, list->v, sizeof *list->v, kept);
+}
+
+void model_remove_all(model *m, bool goes(const model_array *a, const void *context), const void *context)
+{
+    remove_all(&m->arrays, goes, context);
+}
+
+void frame_remove_all(frame *f, bool goes(const model_array *a, const void *context), const void *context)
+{
+    remove_all(&f->arrays, goes, context);
 }
 
 static bool is_named(const model_array *a, const void *name)

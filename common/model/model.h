@@ -33,6 +33,9 @@ typedef struct model_array {
         char **str; /* each owned, UTF-8, never NULL */
     };
     bool lent; /* the data is someone else's, and only read */
+    /* Of f64: its stream has it as f32. Where it was read, each number is one of an f32; writing rounds to the nearest.
+     * So what computes with frames has doubles, whatever they are stored as. */
+    bool narrow;
 } model_array;
 
 typedef struct model_arrays {
@@ -131,6 +134,9 @@ void model_remove(model *m, const char *name);
 /* Removes every array that is to go, all at once. */
 void model_remove_all(model *m, bool goes(const model_array *a, const void *context), const void *context);
 
+/* The same of a frame. */
+void frame_remove_all(frame *f, bool goes(const model_array *a, const void *context), const void *context);
+
 /* For a tool that changes an axis (its count or its order): removes the axis and every array that is over it or
  * points to it, noting those that the known table lacks. */
 void model_axis_drop(model *m, const char *axis, notes *warnings);
@@ -143,6 +149,12 @@ const char *model_surface(const model *m, int *at, char *name, size_t size);
 static inline int64_t model_line(const model_array *a, int64_t row)
 {
     return a->line > 0 ? a->line + 1 + row : 0;
+}
+
+/* The type that the array has in a stream. */
+static inline model_type model_stored(const model_array *a)
+{
+    return a->narrow ? MODEL_F32 : a->type;
 }
 
 size_t model_type_size(model_type t);

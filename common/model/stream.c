@@ -70,7 +70,7 @@ static int pattern_set(pattern *p, const model_arrays *arrays, err *e)
         return -1;
     for (int i = 0; i < arrays->count; i++) {
         const model_array *a = &arrays->v[i];
-        p->v[i] = (model_array){.type = a->type, .columns = a->columns};
+        p->v[i] = (model_array){.type = a->type, .columns = a->columns, .narrow = a->narrow};
         p->count = i + 1;
         p->v[i].name = mem_text(a->name, e);
         p->v[i].unit = mem_text(a->unit, e);
@@ -86,7 +86,7 @@ static int pattern_set(pattern *p, const model_arrays *arrays, err *e)
 static bool pattern_fits(const pattern *p, int i, const model_array *a)
 {
     const model_array *b = i < p->count ? &p->v[i] : NULL;
-    return b && a->type == b->type && a->columns == b->columns && !strcmp(a->name, b->name) &&
+    return b && a->type == b->type && a->narrow == b->narrow && a->columns == b->columns && !strcmp(a->name, b->name) &&
            !strcmp(a->unit, b->unit) && !strcmp(a->axis, b->axis);
 }
 
@@ -308,11 +308,20 @@ int model_read(model_reader *r, model *m, err *e)
     return r->next.kind == ITEM_END ? finish(r, &r->next, e) : 0;
 }
 
+/* A known array of f64 may be stored as f32 in frames. */
+static int widen(model_array *a, err *e)
+{
+    const known *k = a->type == MODEL_F32 ? known_find(a->name) : NULL;
+    return k && k->type == MODEL_F64 ? item_widen(a, e) : 0;
+}
+
 static int add_frame_array(model_reader *r, const model *m, frame *f, item *it, err *e)
 {
     const char *name = it->array.name, *wrong = belongs(name, true);
     if (wrong)
         return item_error(&r->from, it, e, "array %s %s", name, wrong);
+    if (widen(&it->array, e))
+        return -1;
     if (frame_find(f, name))
         return item_error(&r->from, it, e, "a second array %s in a frame; expected one", name);
     if (r->pattern.set && !pattern_fits(&r->pattern, f->arrays.count, &it->array))
@@ -489,6 +498,8 @@ static int check_frame(const model_writer *w, const frame *f, err *e)
             return err_set(e, "model", 0, "array %s does not fit into a frame of this model", a->name);
         if (model_check(&w->axes, a, "model", 0, e))
             return -1;
+        if (a->narrow && !item_rounds(a))
+            return err_set(e, "model", 0, "array %s has a number that no f32 holds; expected it as f64", a->name);
         same = same && pattern_fits(&w->pattern, i, a);
     }
     if (w->pattern.set && !same)

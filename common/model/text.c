@@ -331,7 +331,8 @@ static int text_begin(item_source *s, err *e)
 
 static void put_array(out *o, const model_array *a)
 {
-    out_format(o, "array %s %s %s %s %" PRId32 "\n", a->name, model_type_name(a->type), a->unit, a->axis, a->columns);
+    out_format(o, "array %s %s %s %s %" PRId32 "\n", a->name, model_type_name(model_stored(a)), a->unit, a->axis,
+               a->columns);
     for (int64_t row = 0; row < a->rows; row++)
         for (int32_t c = 0; c < a->columns; c++) {
             text_put_value(o, a, row * a->columns + c);

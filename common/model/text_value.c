@@ -215,6 +215,10 @@ void text_put_quoted(out *o, const char *text)
 
 void text_put_value(out *o, const model_array *a, int64_t i)
 {
+    if (a->narrow) {
+        out_format(o, isnan(a->f64[i]) ? "nan" : "%.9g", (double)(float)a->f64[i]);
+        return;
+    }
     switch (a->type) {
     case MODEL_F32:
         out_format(o, isnan(a->f32[i]) ? "nan" : "%.9g", (double)a->f32[i]);

@@ -219,7 +219,7 @@ void values_text(const model_array *a, int64_t row, char to[VALUES_TEXT])
     for (int i = 0; i < a->columns && i < VALUES_MOST; i++) {
         if (i)
             *at++ = ' ';
-        at += num_text(value_at(a, row * a->columns + i), a->type == MODEL_F32, at);
+        at += num_text(value_at(a, row * a->columns + i), model_stored(a) == MODEL_F32, at);
     }
     *at = '\0';
 }

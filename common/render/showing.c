@@ -40,6 +40,17 @@ uint64_t showing_cleared(const showing_want *want, const char *name)
     return by;
 }
 
+int showing_moves(const showing_want *w, const char *what, const double **u, err *e)
+{
+    const model_array *a = w->moved ? frame_find(w->moved, "node.displacement") : NULL;
+    *u = a ? a->f64 : NULL;
+    if (a || !w->moved)
+        return 0;
+    return err_set(e, NULL, 0,
+                   "frame %lld has no node.displacement, with which %s move; expected it, or the model at rest",
+                   (long long)w->moved->index, what);
+}
+
 void showing_place(const double *rest, const double *u, int64_t node, float *to)
 {
     for (int a = 0; a < 3; a++)

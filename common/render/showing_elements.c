@@ -88,14 +88,16 @@ static int32_t *number(const boundary *b, int64_t nodes, scene_mesh *to, err *e)
 static int shape(const model *m, const showing_want *w, const boundary *b, const int32_t *of_vertex, scene_mesh *to,
                  err *e)
 {
-    const model_array *u = w->moved ? frame_find(w->moved, "node.displacement") : NULL;
+    const double *u;
+    if (showing_moves(w, "elements", &u, e))
+        return -1;
     const double *rest = model_find(m, "node.position")->f64;
     to->position = mem_array(3 * to->vertices, sizeof *to->position, "vertices", e);
     to->edges = to->position ? mem_array(b->faces, 1, "faces", e) : NULL;
     if (!to->edges)
         return -1;
     for (int64_t v = 0; v < to->vertices; v++)
-        showing_place(rest, u ? u->f64 : NULL, of_vertex[v], &to->position[3 * v]);
+        showing_place(rest, u, of_vertex[v], &to->position[3 * v]);
     memset(to->edges, b->corners == 4 ? 15 : 7, (size_t)b->faces);
     showing_linear(edge, to->edge_colour);
     return 0;

@@ -14,6 +14,10 @@ bool showing_named(const char *const *pattern, int patterns, const char *name);
 /* By which of the want's clear one sees through what has this name: bit k for clear[k]. */
 uint64_t showing_cleared(const showing_want *want, const char *name);
 
+/* How the frame that is shown moves the nodes, which `what` moves with: *u is NULL at rest. -1 with e filled where the
+ * frame does not say. */
+int showing_moves(const showing_want *want, const char *what, const double **u, err *e);
+
 /* Where a node is, as the frame moves it. u: NULL: at rest. */
 void showing_place(const double *rest, const double *u, int64_t node, float *to);
 

@@ -29,10 +29,10 @@ static int add(showing *b, float *spheres, int64_t count, const char *label, con
 static int add_rigid(showing *b, const model *m, const showing_want *w, err *e)
 {
     const model_array *rigid = model_need(m, "node.rigid", e), *rest = rigid ? model_need(m, "node.position", e) : NULL;
-    const model_array *u = w->moved ? frame_find(w->moved, "node.displacement") : NULL;
+    const double *u;
     int64_t count = 0;
     float radius = (float)(.35 * side(m));
-    if (!rest)
+    if (!rest || showing_moves(w, "rigid nodes", &u, e))
         return -1;
     for (int64_t n = 0; n < rigid->rows; n++)
         count += rigid->u8[n] != 0;
@@ -41,7 +41,7 @@ static int add_rigid(showing *b, const model *m, const showing_want *w, err *e)
     float *sphere = mem_array(4 * count, sizeof *sphere, "rigid nodes", e), *to = sphere;
     for (int64_t n = 0; sphere && n < rigid->rows; n++)
         if (rigid->u8[n]) {
-            showing_place(rest->f64, u ? u->f64 : NULL, n, to);
+            showing_place(rest->f64, u, n, to);
             to[3] = radius;
             to += 4;
         }

@@ -256,11 +256,11 @@ static int add_surface(showing *b, const model *m, const showing_want *w, const 
                        err *e)
 {
     part p = {.at_nodes = at_nodes, .field = w->field};
-    const model_array *u = w->moved ? frame_find(w->moved, "node.displacement") : NULL;
     int is_bound = bound_of(&p.b, m, name, e), seen = is_bound < 0 ? -1 : choose_groups(&p, w, e);
     p.is_bound = is_bound > 0;
-    p.u = u ? u->f64 : NULL;
     p.own = own_displacement(w->moved, name);
+    if (seen > 0 && p.is_bound && !p.own && showing_moves(w, "bound surfaces", &p.u, e))
+        seen = -1;
     if (seen > 0 && p.u && p.is_bound && find_motion(&p, m, w->moved, e))
         seen = -1;
     b->cleared |= p.cleared;

@@ -1,6 +1,7 @@
 #include "msds/run/run_options.h"
 
 #include "msds/run/methods.h"
+#include "results/frame_choice.h"
 
 #define TO(field) offsetof(struct options, field)
 static const opt option_list[] = {
@@ -61,6 +62,8 @@ static const opt option_list[] = {
      "stiffness across its edges relative to along them [default 0.5]"},
     {OPT_INPUT, 0, "unit", NUM_UNITS_CHOICES, OPT_TEXT, TO(unit), 0, 0, NULL, 0,
      "unit of OBJ files [default the model's]"},
+    {OPT_RESULT, 0, "frames", "NAME[:f32],...", OPT_LIST, TO(frames), 0, 0, FRAME_CHOICE_WORDS, 0,
+     "arrays that frames have: displacement, velocity, surfaces, ... [default all, f64]"},
     {OPT_RESULT, 0, "haptics", "SOCKET", OPT_TEXT, TO(haptics), 0, 0, NULL, OPT_OUTPUT | OPT_FILE | OPT_WRITES,
      "--live: force and contact stiffness of frames, for devices"},
     {OPT_RESULT, 0, "record", "FILE", OPT_TEXT, TO(record), 0, 0, NULL, OPT_OUTPUT | OPT_FILE | OPT_WRITES,

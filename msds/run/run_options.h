@@ -14,6 +14,7 @@ struct options {
     double dt, damping, repulsion, friction, rate, skin_stiffness, skin_anchors, skin_tension;
     const char *skin, *cavity, *outflow, *wall;
     opt_numbers gravity;
+    opt_list frames;
 };
 
 extern const opt_tool run_options_table;

@@ -129,19 +129,51 @@ static int start_from(session *s, const frame *last, err *e)
     return s->skin.vertices ? skin_model_start(&s->skin, last, e) : 0;
 }
 
+/* What frames can have, and what --frames chooses of it. */
+static int choose_frames(session *s, err *e)
+{
+    static const char *const names[] = {"node.displacement", "node.velocity", "probe.pose", "probe.force",
+                                        "probe.torque"};
+    frame_choice *c = &s->frames;
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+        if (frame_choice_offer(c, names[i], 0, e))
+            return -1;
+    if (s->skin.vertices && skin_model_offer(&s->skin, c, e))
+        return -1;
+    return frame_choice_offer_bound(c, &s->m, e) || frame_choice_read(c, &s->o->frames, e) ? -1 : 0;
+}
+
 /* Passes on the frames that came, and starts from the last. */
 static int take_frames(session *s, err *e)
 {
     frame last = {0};
     const int64_t count = stage_last_frame(&s->stage, &s->m, true, &last, e);
-    const int failed = count > 0 ? start_from(s, &last, e) : 0;
+    const int failed =
+        count > 0 && (start_from(s, &last, e) || frame_choice_fits(&s->frames, &last, in_name(s->stage.source), e)) ? -1
+                                                                                                                    : 0;
     frame_free(&last);
     return count < 0 ? -1 : failed;
 }
 
+/* Flushed, as a frame is to be seen when it is there. */
+static int put_frame(void *context, const frame *f, err *e)
+{
+    const session *s = context;
+    const int failed = model_write_frame(s->stage.writer, f, e);
+    out_flush(s->stage.sink);
+    return failed;
+}
+
+int session_finish(session *s, err *e)
+{
+    frame_queue *q = s->queue;
+    s->queue = NULL;
+    return frame_queue_close(q, e);
+}
+
 int session_start(session *s, err *e)
 {
-    if (take_frames(s, e) || press_bones(&s->press, &s->m, e) ||
+    if (take_frames(s, e) || frame_choice_open(&s->frames, &s->m, e) || press_bones(&s->press, &s->m, e) ||
         inverted_make(&s->inverted, &s->problem, s->threads, e) || openness_make(&s->openness, &s->problem, e))
         return -1;
     s->state = s->device->create(&s->problem, s->threads, e);
@@ -153,7 +185,8 @@ int session_start(session *s, err *e)
             return -1;
     }
     out_flush(s->stage.sink);
-    return 0;
+    s->queue = frame_queue_open(put_frame, s, s->o->live, e);
+    return s->queue ? 0 : -1;
 }
 
 void session_method(session *s, method_word method)
@@ -261,7 +294,9 @@ int session_prepare(session *s, err *e)
     session_method(s, (method_word)o->method);
     if (o->compare)
         say_springs(s);
-    return make_skin(s, e) ? -1 : press_make(&s->press, &s->problem, &s->probe, o->iterations, o->rate, e);
+    if (make_skin(s, e) || choose_frames(s, e))
+        return -1;
+    return press_make(&s->press, &s->problem, &s->probe, o->iterations, o->rate, e);
 }
 
 static int change_probe(session *s, err *e)
@@ -319,6 +354,7 @@ void session_free(session *s)
     compare_free(s->other, s->device);
     if (s->state)
         s->device->destroy(s->state);
+    frame_choice_free(&s->frames);
     inverted_free(&s->inverted);
     openness_free(&s->openness);
     pool_destroy(s->threads);

@@ -5,6 +5,7 @@
 #define SINEW_SESSION_H
 
 #include "cli/progress.h"
+#include "frames/frame_queue.h"
 #include "live/broadcast.h"
 #include "model/stage.h"
 #include "msds/problem/largest.h"
@@ -17,6 +18,7 @@
 #include "msds/run/press.h"
 #include "msds/run/run_options.h"
 #include "msds/run/skin_model.h"
+#include "results/frame_choice.h"
 #include "volume/placing.h"
 
 enum { MASS_STABLE, MASS_LUMPED, SESSION_TEXTS = 16 };
@@ -57,6 +59,8 @@ typedef struct session {
     executor_ahead ahead;
     pool *threads;
     msds_state *state;
+    frame_queue *queue; /* of frames on their way out */
+    frame_choice frames; /* the arrays that they have */
     inverted inverted;
     openness openness;
     compare *other;       /* the other method, or NULL */
@@ -100,6 +104,9 @@ int session_provenance(const session *s, tool *t, err *e);
 
 /* Passes on the frames that came, starts from the last, and makes the state. */
 int session_start(session *s, err *e);
+
+/* Waits until all frames are written. -1 with e filled where one could not be. */
+int session_finish(session *s, err *e);
 
 /* Takes over the options, of which some of one part have changed, from the next frame on. */
 int session_change(session *s, session_part part, err *e);

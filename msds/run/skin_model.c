@@ -1,5 +1,7 @@
 #include "msds/run/skin_model.h"
 
+#include "frames/frame_queue.h"
+
 #include <stdio.h>
 #include <string.h>
 
@@ -34,6 +36,14 @@ static void array_name(const skin *s, const char *what, char to[MODEL_NAME])
     snprintf(to, MODEL_NAME, "%s/vertex.%s", s->shape.name, what);
 }
 
+int skin_model_offer(const skin *s, frame_choice *c, err *e)
+{
+    char u[MODEL_NAME], n[MODEL_NAME];
+    array_name(s, "displacement", u);
+    array_name(s, "normal", n);
+    return frame_choice_offer(c, u, 0, e) || frame_choice_offer(c, n, 0, e) ? -1 : 0;
+}
+
 int skin_model_start(skin *s, const frame *f, err *e)
 {
     char name[MODEL_NAME];
@@ -50,12 +60,12 @@ int skin_model_put(const skin *s, frame *f, const model *m, err *e)
 {
     char name[MODEL_NAME];
     array_name(s, "displacement", name);
-    model_array *u = frame_add(f, m, name, e);
+    model_array *u = frame_queue_array(f, m, name, e);
     if (!u)
         return -1;
     memcpy(u->f64, s->u, 3 * (size_t)s->vertices * sizeof *s->u);
     array_name(s, "normal", name);
-    model_array *n = frame_add(f, m, name, e);
+    model_array *n = frame_queue_array(f, m, name, e);
     if (!n)
         return -1;
     skin_normals(s, n->f64);

@@ -5,6 +5,7 @@
 #define SINEW_SKIN_MODEL_H
 
 #include "msds/run/skin.h"
+#include "results/frame_choice.h"
 #include "volume/body.h"
 
 /* An OBJ: its coordinates times scale are in the model's axes, or where a body has them as this part (else NULL). */
@@ -19,6 +20,9 @@ typedef struct skin_source {
  * does so already; name gets that. */
 int skin_model_carry(model *m, const skin_source *from, bool nameless, char name[SURFACE_NAME_MOST + 1],
                      notes *warnings, err *e);
+
+/* Offers the arrays that frames get. */
+int skin_model_offer(const skin *s, frame_choice *c, err *e);
 
 /* Starts from a frame, whose displacement of it goes into u; at rest in speed. */
 int skin_model_start(skin *s, const frame *f, err *e);

@@ -8,7 +8,7 @@
 /* An array of one row. An array added is to be filled before the next. */
 static int put_numbers(const session *s, frame *f, const char *name, const double *number, int count, err *e)
 {
-    model_array *a = frame_add(f, &s->m, name, e);
+    model_array *a = frame_queue_array(f, &s->m, name, e);
     if (a)
         memcpy(a->f64, number, (size_t)count * sizeof *number);
     return a ? 0 : -1;
@@ -26,27 +26,36 @@ static int put_probe(const session *s, frame *f, const frame_input *from, err *e
                : 0;
 }
 
-static int write_frame(session *s, const frame_input *from, err *e)
+/* Fills a frame from the state, so that the state may go on while the frame is written. */
+static int fill_frame(session *s, const frame_input *from, frame *f, err *e)
 {
-    frame f = {.index = s->next_frame++, .time = from->time};
-    int result = -1;
-    model_array *u = frame_add(&f, &s->m, "node.displacement", e);
+    if (!from->has_pose)
+        frame_free(f); /* an earlier frame in it may have had a pose */
+    f->index = s->next_frame++;
+    f->time = from->time;
+    model_array *u = frame_queue_array(f, &s->m, "node.displacement", e);
     if (!u || s->device->get(s->state, MSDS_DISPLACEMENT, u->f64, e))
-        goto out;
+        return -1;
     inverted_count(&s->inverted, u->f64, from->time);
     openness_measure(&s->openness, u->f64, from->time);
-    model_array *v = frame_add(&f, &s->m, "node.velocity", e);
-    if (!v || s->device->get(s->state, MSDS_VELOCITY, v->f64, e))
-        goto out;
-    if (put_probe(s, &f, from, e))
-        goto out;
-    if (s->skin.vertices && skin_model_put(&s->skin, &f, &s->m, e))
-        goto out;
-    result = model_write_frame(s->stage.writer, &f, e);
-    out_flush(s->stage.sink);
-out:
-    frame_free(&f);
-    return result;
+    if (frame_choice_has(&s->frames, "node.velocity")) {
+        model_array *v = frame_queue_array(f, &s->m, "node.velocity", e);
+        if (!v || s->device->get(s->state, MSDS_VELOCITY, v->f64, e))
+            return -1;
+    }
+    if (put_probe(s, f, from, e) || (s->skin.vertices && skin_model_put(&s->skin, f, &s->m, e)))
+        return -1;
+    u = frame_find(f, "node.displacement"); /* it moves as arrays are added */
+    if (frame_choice_add_surfaces(&s->frames, f, &s->m, u->f64, s->threads, e))
+        return -1;
+    frame_choice_take(&s->frames, f);
+    return 0;
+}
+
+static int write_frame(session *s, const frame_input *from, err *e)
+{
+    frame *f = frame_queue_next(s->queue, e);
+    return !f || fill_frame(s, from, f, e) || frame_queue_send(s->queue, e) ? -1 : 0;
 }
 
 /* What a move of a sweep that is not the last is made by: no exact solution of it is wanted. */

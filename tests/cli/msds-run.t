@@ -219,6 +219,21 @@ msds-mesh -q $block --fix none >"$T/free.sinew" 2>"$T/err"
 fails 1 "an exact FEM that nothing holds" 'nothing holds node' msds-run --method fem --exact --poses "$T/first.tum" <"$T/free.sinew"
 fails 1 "no model" 'no model on stdin' msds-run --poses "$T/first.tum" </dev/null
 
+# Frames are written while the next is computed: what is wrong with the output is said as it is of any other.
+if [ -w /dev/full ]; then
+    # shellcheck disable=SC2016
+    fails 1 "frames on a full device" '^msds-run: stdout: cannot write: No space' \
+        sh -c 'msds-run -q --probe sphere:2cm --poses "$1" <"$2" >/dev/full' - "$T/press.tum" "$T/block.sinew"
+else
+    skip 1 "no /dev/full"
+fi
+mkfifo "$T/closed"
+msds-run -q --probe sphere:2cm --poses "$T/press.tum" <"$T/block.sinew" >"$T/closed" 2>"$T/err" &
+run=$!
+head -c 1000 "$T/closed" >"$T/read"
+wait "$run"
+is "$? $(wc -c <"$T/err" | tr -d ' ')" "141 0" "a reader that ends: so does the run, quietly"
+
 # The hanging block, by CalculiX's linear tetrahedra and ours.
 if have ccx; then
     # shellcheck disable=SC2086

@@ -2,6 +2,7 @@
 #include "streams.h"
 #include "tap.h"
 
+#include <math.h>
 #include <zlib.h>
 
 /* Every type, nan, inf, -0, the ends of ranges, strings of all kinds, empty arrays, unknown blocks, frames. */
@@ -47,10 +48,14 @@ static const char rich[] =
     "frame -9 0.01\n"
     "array node.displacement f64 m node 3\n"
     "0 0 0\n0 0 1\n-0 0 1e-300\n"
+    "array node.velocity f32 m/s node 3\n"
+    "0.100000001 0 0\n0 -0 1\n1.40129846e-45 0 3.40282347e+38\n"
     "array x-lot str 1 element 1\n\"a\"\n"
     "frame -7 0.02\n"
     "array node.displacement f64 m node 3\n"
     "0 0 0\n0 0 1\n1 0 0\n"
+    "array node.velocity f32 m/s node 3\n"
+    "0 0 0\n0 0 0\n0 0 0\n"
     "array x-lot str 1 element 1\n\"b\"\n"
     "end\n";
 
@@ -372,6 +377,60 @@ static void test_floats(void)
     ok(!wrong, "%%.9g gives every float back");
 }
 
+/* A model of 3 nodes with a frame whose displacements are written as f32; what comes back, in *back. -1 where it is
+ * refused. */
+static int through_narrow(const double u[9], bool text, frame *back, err *e)
+{
+    model m = {0}, read = {0};
+    frame f = {.time = 1};
+    size_t size;
+    int got = -1;
+    out *o = out_memory(e);
+    model_writer *w = o ? model_writer_open(o, text, e) : NULL;
+    model_array *a =
+        w && !model_axis_add(&m, "node", 3, e) ? frame_lend(&f, &m, "node.displacement", "m", "node", 3, u, e) : NULL;
+    if (a)
+        a->narrow = true;
+    const bool whole = a && !model_write(w, &m, e) && !model_write_frame(w, &f, e) && !model_write_end(w, e);
+    const unsigned char *at = o ? out_bytes(o, &size) : NULL;
+    in *s = whole ? in_memory(at, size, "stdin", e) : NULL;
+    model_reader *r = s ? model_reader_open(s, e) : NULL;
+    if (r && !model_read(r, &read, e))
+        got = model_read_frame(r, &read, back, e) == 1 ? 0 : -1;
+    model_reader_close(r);
+    in_close(s);
+    model_writer_close(w);
+    out_discard(o);
+    frame_free(&f);
+    model_free(&m);
+    model_free(&read);
+    return got;
+}
+
+/* Doubles that are stored as f32 come back as the nearest floats, in doubles. */
+static void test_narrow(void)
+{
+    double u[9] = {.1, -1.0 / 3, 1e-50, 1e-40, -0.0, 3.4e38, 1 + 0x1p-24, 1 + 0x1.8p-23, 7};
+    for (int text = 0; text < 2; text++) {
+        frame back = {0};
+        err e = {0};
+        const int failed = through_narrow(u, text, &back, &e);
+        const model_array *a = failed ? NULL : frame_find(&back, "node.displacement");
+        bool same = a && a->type == MODEL_F64 && a->narrow && model_stored(a) == MODEL_F32;
+        for (int i = 0; same && i < 9; i++)
+            same = a->f64[i] == (double)(float)u[i] && !signbit(a->f64[i]) == !signbit(u[i]);
+        ok(same,
+           text ? "doubles stored as f32 come back rounded, from text" : "doubles stored as f32 come back rounded");
+        frame_free(&back);
+    }
+    u[4] = -1e39;
+    frame back = {0};
+    err e = {0};
+    ok(through_narrow(u, false, &back, &e) == -1 && strstr(e.text, "node.displacement has a number that no f32 holds"),
+       "what is beyond f32 is refused");
+    frame_free(&back);
+}
+
 /* A frame is there as soon as its last array is (from the second on): nothing of the next may be needed. */
 static void test_liveness(void)
 {
@@ -421,6 +480,7 @@ int main(void)
     test_nan();
     test_one_nan();
     test_floats();
+    test_narrow();
     test_liveness();
     test_changed();
     return done_testing();

@@ -46,7 +46,7 @@ static int copy_on_card(cuda_state *s, real *to, const real *from, int64_t numbe
 enum { FRAME_THREADS = 256, FRAME_EACH = 3 /* numbers, of displacement and of velocity: as many nodes as threads */ };
 
 /* A thread has one component of three nodes: what is written follows each other, and what a node has side by side is
- * read by threads side by side. */
+ * read by threads side by side. velocity: NULL where frames have none. */
 static __global__ void frame_kernel(const __grid_constant__ cuda_view<real> v, const int32_t *__restrict__ place,
                                     const real *__restrict__ u, const real *__restrict__ velocity,
                                     real *__restrict__ to)
@@ -59,7 +59,8 @@ static __global__ void frame_kernel(const __grid_constant__ cuda_view<real> v, c
         if (n < v.nodes) {
             const int64_t from = v.offset[i % 3] + place[n] * v.along, at = 3 * (int64_t)first + i;
             to[at] = u[from];
-            to_velocity[at] = velocity[from];
+            if (velocity)
+                to_velocity[at] = velocity[from];
         }
     }
 }
@@ -67,7 +68,7 @@ static __global__ void frame_kernel(const __grid_constant__ cuda_view<real> v, c
 /* How many numbers field i takes in a frame; in_order: that the card has put in order. */
 static int64_t sent_numbers(const cuda_state *s, int i, bool in_order)
 {
-    if (i >= CUDA_STEPPED && !fields_is_in(&s->p->fields, i, FIELD_IN_FRAMES))
+    if (!fields_is_in(&s->p->fields, i, FIELD_IN_FRAMES))
         return 0;
     return in_order && i < CUDA_STEPPED ? 3 * s->tiles.nodes : layout_of(s, i).numbers;
 }
@@ -148,10 +149,13 @@ static int send_directly(cuda_state *s, const cuda_frame *f, err *e)
 static int fill_frame(cuda_state *s, err *e)
 {
     const card_blocks blocks = {(s->tiles.nodes + FRAME_THREADS - 1) / FRAME_THREADS, FRAME_THREADS, 0, s->stream};
-    real *at = s->frame + CUDA_STEPPED * 3 * s->tiles.nodes;
-    if (card_check(card_start(frame_kernel, blocks, s->view, frame_place(s), s->field[TLED_DISPLACEMENT],
-                              s->field[TLED_VELOCITY], s->frame),
-                   "the start of a frame", s->step, e))
+    real *at = s->frame;
+    const real *velocity = sent_numbers(s, TLED_VELOCITY, true) ? s->field[TLED_VELOCITY] : NULL;
+    for (int i = 0; i < CUDA_STEPPED; i++)
+        at += sent_numbers(s, i, true);
+    if (card_check(
+            card_start(frame_kernel, blocks, s->view, frame_place(s), s->field[TLED_DISPLACEMENT], velocity, s->frame),
+            "the start of a frame", s->step, e))
         return -1;
     for (int i = CUDA_STEPPED; i < s->p->fields.count; i++) {
         const int64_t numbers = sent_numbers(s, i, true);

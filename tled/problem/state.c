@@ -22,19 +22,30 @@
 /* How a run begins without contractile elements. */
 #define WITHOUT_CONTRACTILE "muscles as strong as if they had not moved"
 
-static const field state_field[] = {
-    [TLED_DISPLACEMENT] = {"node.displacement", "m", FIELD_NODE, 3, FIELD_IN_FRAMES | FIELD_IN_CHECKPOINTS, NULL},
-    [TLED_VELOCITY] = {"node.velocity", "m/s", FIELD_NODE, 3, FIELD_IN_FRAMES | FIELD_IN_CHECKPOINTS, "velocity 0"},
-    [TLED_CONTRACTILE] = {"element.contractile", "1", FIELD_ELEMENT, 1, FIELD_IN_FRAMES | FIELD_IN_CHECKPOINTS,
-                          WITHOUT_CONTRACTILE},
-    [TLED_MIXCONTRACTILE] = {"element.mixcontractile", "1", FIELD_ELEMENT, 1, FIELD_IN_FRAMES | FIELD_IN_CHECKPOINTS,
-                             WITHOUT_CONTRACTILE},
-};
+/* velocity: where the velocity is written. */
+#define STATE_FIELDS(velocity)                                                                                         \
+    {                                                                                                                  \
+        [TLED_DISPLACEMENT] = {"node.displacement", "m", FIELD_NODE, 3, FIELD_IN_FRAMES | FIELD_IN_CHECKPOINTS, NULL}, \
+        [TLED_VELOCITY] = {"node.velocity", "m/s", FIELD_NODE, 3, velocity, "velocity 0"},                             \
+        [TLED_CONTRACTILE] = {"element.contractile", "1", FIELD_ELEMENT, 1, FIELD_IN_FRAMES | FIELD_IN_CHECKPOINTS,    \
+                              WITHOUT_CONTRACTILE},                                                                    \
+        [TLED_MIXCONTRACTILE] = {                                                                                      \
+            "element.mixcontractile", "1", FIELD_ELEMENT, 1, FIELD_IN_FRAMES | FIELD_IN_CHECKPOINTS,                   \
+            WITHOUT_CONTRACTILE},                                                                                      \
+    }
+
+static const field state_field[] = STATE_FIELDS(FIELD_IN_FRAMES | FIELD_IN_CHECKPOINTS);
+static const field state_field_still[] = STATE_FIELDS(FIELD_IN_CHECKPOINTS);
 
 fields tled_fields(int64_t nodes, int64_t elements)
 {
     return (fields){
         .field = state_field, .count = TLED_CONTRACTILE, .rows = {[FIELD_NODE] = nodes, [FIELD_ELEMENT] = elements}};
+}
+
+void tled_problem_still(tled_problem *p)
+{
+    p->fields.field = state_field_still;
 }
 
 /* Where all is known that the state may have. */

@@ -137,6 +137,9 @@ int tled_problem_reload(tled_problem *p, const model *m, err *e);
 /* What a state of a model of so many nodes and elements consists of; without contractile elements. */
 fields tled_fields(int64_t nodes, int64_t elements);
 
+/* From here on velocities are in no frame, so no executor copies them for one; checkpoints have them all the same. */
+void tled_problem_still(tled_problem *p);
+
 /* Starts from a frame: its time and its fields, with a note of those that it lacks and a run can begin without. */
 int tled_problem_start(tled_problem *p, const frame *f, notes *warnings, err *e);
 

@@ -1,5 +1,6 @@
 #include "tled/run/options.h"
 
+#include "results/frame_choice.h"
 #include "results/results.h"
 
 #define TO(field) offsetof(struct options, field)
@@ -46,6 +47,8 @@ static const opt option_list[] = {
      "time between frames [s; default only the last]"},
     {OPT_RESULT, 0, "results", "NAME,...", OPT_LIST, TO(results), 0, 0, RESULTS_CHOICES, OPT_OUTPUT,
      "what elements hold in frames: stress, strain, ... or all [default none]"},
+    {OPT_RESULT, 0, "frames", "NAME[:f32],...", OPT_LIST, TO(frames), 0, 0, FRAME_CHOICE_WORDS, 0,
+     "arrays that frames have: displacement, velocity, surfaces, ... [default all, f64]"},
     {OPT_ACTION, 0, "probe", "SHAPE", OPT_TEXT, TO(probe), 0, 0, "sphere:|linear:|curved:|convex:", OPT_OUTPUT,
      "sphere:R, linear:W,T, curved:R,A,T or convex:OBJ"},
     {OPT_INPUT, 0, "poses", "FILE", OPT_TEXT, TO(poses), 0, 0, NULL, OPT_FILE | OPT_JOB,

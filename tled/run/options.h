@@ -11,7 +11,7 @@ struct options {
     double dt, seconds, rest, ramp, damping, every, log_every; /* below 0: not given */
     int64_t steps;                                             /* 0: not given */
     opt_numbers gravity, rise_fall;
-    opt_list contract, material, tsv, results;
+    opt_list contract, material, tsv, results, frames;
     unsigned which; /* of results, once read */
     const char *script, *materials, *probe, *poses, *unit, *log, *hourglass;
     const char *activations, *expressions;

@@ -196,7 +196,10 @@ static int take_frames(session *s, bool changed, err *e)
         s->next_frame = last.index + 1;
     s->started = count > 0 && !changed;
     s->run.first = (s->run.every > 0 || s->live) && !s->started;
-    const int failed = count > 0 ? tled_problem_start(&s->problem, &last, &s->warnings, e) : 0;
+    const int failed = count > 0 && (tled_problem_start(&s->problem, &last, &s->warnings, e) ||
+                                     (!changed && frame_choice_fits(&s->frames, &last, in_name(s->stage.source), e)))
+                           ? -1
+                           : 0;
     if (count > 0)
         sliding_start(&s->sliding, &last);
     frame_free(&last);
@@ -376,7 +379,7 @@ static int prepare(session *s, const struct options *o, char *device, size_t siz
     if (!s->run.device ||
         folds_make(&s->folds, &s->problem, &s->m, s->run.device->monitor ? pool_threads(s->threads) : 1, e))
         return -1;
-    return tled_frame_results(s, o, e);
+    return tled_frame_results(s, o, e) || tled_frame_choose(s, o, e) ? -1 : 0;
 }
 
 /* What the run is asked for, and whom it calls. */
@@ -430,7 +433,8 @@ static int run_anew(session *s, const struct options *o, run_end *end, err *e)
 static int begin_run(session *s, const struct options *o, err *e)
 {
     set_run(s, o);
-    if (take_frames(s, o->materials || o->material.count, e) || start_coarse(s, o) || choose_end(s, o, e))
+    if (take_frames(s, o->materials || o->material.count, e) || frame_choice_open(&s->frames, &s->m, e) ||
+        start_coarse(s, o) || choose_end(s, o, e))
         return -1;
     if (s->collider.poses && !s->live)
         collider_begin(&s->collider, &s->problem, s->next_frame ? 0 : o->ramp, &s->warnings);
@@ -500,6 +504,7 @@ static void end_session(session *s, tool *t, err *e)
     results_destroy(s->results);
     free(s->activation);
     folds_free(&s->folds);
+    frame_choice_free(&s->frames);
     tled_problem_free(&s->problem);
     collider_free(&s->collider);
     sliding_free(&s->sliding);

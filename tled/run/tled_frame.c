@@ -17,14 +17,54 @@ int tled_frame_results(session *s, const struct options *o, err *e)
     return s->activation ? results_create(&s->results, &s->m, o->which, s->folds.threads, e) : -1;
 }
 
-/* Writes it first: who waits for it need not wait for what is to be said of it. */
-static int put_frame(session *s, const frame *f, err *e)
+static int offer(session *s, const char *const *names, int count, err *e)
+{
+    for (int i = 0; i < count; i++)
+        if (frame_choice_offer(&s->frames, names[i], 0, e))
+            return -1;
+    return 0;
+}
+
+static int offer_fields(session *s, err *e)
+{
+    const fields *f = &s->problem.fields;
+    for (int i = 0; i < f->count; i++)
+        if (fields_is_in(f, i, FIELD_IN_FRAMES) && frame_choice_offer(&s->frames, f->field[i].name, 0, e))
+            return -1;
+    return 0;
+}
+
+static int offer_results(session *s, unsigned which, err *e)
+{
+    for (int i = 0; i < RESULTS; i++)
+        if (which >> i & 1 && frame_choice_offer(&s->frames, results_array(i), FRAME_CHOICE_ALWAYS, e))
+            return -1;
+    return 0;
+}
+
+int tled_frame_choose(session *s, const struct options *o, err *e)
+{
+    static const char *const of_probe[] = {"probe.pose", "probe.force", "probe.torque"};
+    static const char *const of_bodies[] = {"body.pose", "body.force", "body.torque"}, *const of_bone[] = {
+                                                                                           "bone.displacement"};
+    if (offer_fields(s, e) || (s->collider.poses && offer(s, of_probe, 3, e)) ||
+        (films_count(&s->problem) && offer(s, of_bone, 1, e)) ||
+        (bodies_count(&s->problem) && offer(s, of_bodies, 3, e)) || offer_results(s, o->which, e) ||
+        frame_choice_offer_bound(&s->frames, &s->m, e) || frame_choice_read(&s->frames, &o->frames, e))
+        return -1;
+    if (!frame_choice_has(&s->frames, "node.velocity"))
+        tled_problem_still(&s->problem);
+    return 0;
+}
+
+/* Writes it first: who waits for it need not wait for what is to be said of it. displacement: nodes x 3, m; NULL: it is
+ * not known. */
+static int put_frame(session *s, const frame *f, const double *displacement, err *e)
 {
     if (model_write_frame(s->stage.writer, f, e) || out_failed(s->stage.sink, e))
         return -1;
-    const model_array *u = frame_find(f, "node.displacement");
-    if (u && u->rows == s->problem.nodes)
-        folds_add(&s->folds, f->time, u->f64);
+    if (displacement)
+        folds_add(&s->folds, f->time, displacement);
     return 0;
 }
 
@@ -41,9 +81,15 @@ static int add_probe(const session *s, frame *f, const double *displacement, err
     return now ? collider_add(&s->problem, now, f, &s->m, displacement, e) : 0;
 }
 
+/* Bound surfaces on rigid bodies move with these. */
+static bool takes_bodies(const session *s)
+{
+    return bodies_count(&s->problem) && (frame_choice_has_of(&s->frames, "body.") || frame_choice_moves(&s->frames));
+}
+
 bool tled_frame_takes_curves(const session *s)
 {
-    return bodies_count(&s->problem) || films_count(&s->problem) || s->problem.sliding || s->results;
+    return takes_bodies(s) || films_count(&s->problem) || s->problem.sliding || s->results;
 }
 
 /* The curves' values at a frame's time. *own is the caller's to free. NULL with e filled. */
@@ -103,7 +149,7 @@ static int add_looks(session *s, frame *f, const field_values *state, err *e)
                                count > TLED_MIXCONTRACTILE ? state->of[TLED_MIXCONTRACTILE] : NULL}};
     note_beyond(s, &now);
     const int failed = (!value && !s->live) || add_bone(s, f, value, e) ||
-                               bodies_add(&s->problem, s->folds.threads, &now, f, &s->m, e) ||
+                               (takes_bodies(s) && bodies_add(&s->problem, s->folds.threads, &now, f, &s->m, e)) ||
                                sliding_add(&s->problem, s->folds.threads, &now, f, e) || add_results(s, f, value, e)
                            ? -1
                            : 0;
@@ -115,9 +161,13 @@ int tled_frame_write(void *context, double time, const field_values *state, err 
 {
     session *s = context;
     frame f = {.index = s->next_frame++, .time = time};
-    bool whole = !fields_lend(&s->problem.fields, FIELD_IN_FRAMES, state, &f, &s->m, e) &&
-                 !add_probe(s, &f, state->of[TLED_DISPLACEMENT], e) && !add_looks(s, &f, state, e);
-    int result = whole && !put_frame(s, &f, e) && !(s->checkpoint && checkpoint_add(s->checkpoint, &f, e)) ? 0 : -1;
+    const double *u = state->of[TLED_DISPLACEMENT];
+    bool whole = !fields_lend(&s->problem.fields, FIELD_IN_FRAMES, state, &f, &s->m, e) && !add_probe(s, &f, u, e) &&
+                 !add_looks(s, &f, state, e) &&
+                 !frame_choice_add_surfaces(&s->frames, &f, &s->m, u, s->folds.threads, e);
+    if (whole)
+        frame_choice_take(&s->frames, &f);
+    int result = whole && !put_frame(s, &f, u, e) && !(s->checkpoint && checkpoint_add(s->checkpoint, &f, e)) ? 0 : -1;
     frame_free(&f);
     if (s->live)
         live_written(s->live);
@@ -127,6 +177,7 @@ int tled_frame_write(void *context, double time, const field_values *state, err 
 int tled_frame_replay(void *context, const frame *f, err *e)
 {
     session *s = context;
+    const model_array *u = frame_find(f, "node.displacement");
     s->next_frame = f->index + 1;
-    return put_frame(s, f, e);
+    return put_frame(s, f, u && u->rows == s->problem.nodes ? u->f64 : NULL, e);
 }

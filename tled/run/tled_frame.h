@@ -11,6 +11,9 @@
  * filled. */
 int tled_frame_results(session *s, const struct options *o, err *e);
 
+/* Offers what frames can have, and reads --frames, once there is the collider too. -1 with e filled. */
+int tled_frame_choose(session *s, const struct options *o, err *e);
+
 /* Whether frames have more than the fields of a state, for which the curves of their time are needed. */
 bool tled_frame_takes_curves(const session *s);
 

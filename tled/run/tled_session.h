@@ -6,6 +6,7 @@
 
 #include "cli/progress.h"
 #include "model/stage.h"
+#include "results/frame_choice.h"
 #include "results/results.h"
 #include "tled/contact/self_contact.h"
 #include "tled/contact/sliding.h"
@@ -43,6 +44,7 @@ typedef struct session {
     folds folds;            /* of the frames written */
     int64_t beyond;         /* likewise, the most nodes that slid beyond a distance field */
     results *results;       /* that frames get; NULL: none; owned */
+    frame_choice frames;    /* the arrays that they have */
     double *activation;     /* volumes: of the frame that is written, where there are results; owned */
     struct live *live;      /* NULL: not a live run, nor a replay; owned */
     notes warnings;
