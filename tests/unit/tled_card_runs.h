@@ -109,6 +109,21 @@ static inline void test_marched(const block *what, double level, bool scripted, 
     compare_marched(&here, &there, name);
 }
 
+/* The same in double precision, in which large models march as well. */
+static inline void test_marched_double(const block *what, double level, int64_t steps, const tled_executor *cuda,
+                                       const char *name)
+{
+    bench here, there;
+    make(&here, what, level, false, &tled_cpu_double, steps);
+    make(&there, what, level, false, cuda, steps);
+    const int gone = bench_go(&here) | bench_go(&there);
+    ok(!gone && here.end.reading.largest > 1e-6 && here.frames == there.frames && apart(&there, &here) < 1e-12,
+       "%s: after %" PRId64 " steps and %.2g mm, %.2g of the largest displacement off %s", name, here.end.steps,
+       1e3 * here.end.reading.largest, apart(&there, &here), there.e.text);
+    bench_free(&here);
+    bench_free(&there);
+}
+
 /* Few elements, so that tools which watch every access of a card get through it. */
 static inline void test_marched_small(const block *what, int64_t steps, const tled_executor *cuda, const char *name)
 {

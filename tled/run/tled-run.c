@@ -184,6 +184,12 @@ static int say_provenance(tool *t, const session *s, const struct options *o, er
                            r->rate_fixed ? "" : " or cut", r->damping, r->adapt ? " adapted" : "");
 }
 
+/* The stream that frames came from: in a job of a batch, the batch's. */
+static const char *where_from(const session *s)
+{
+    return s->stage.source ? in_name(s->stage.source) : "stdin";
+}
+
 /* Reads the frames that came, passes them on, and starts from the last. Frames of other materials are not passed on. */
 static int take_frames(session *s, bool changed, err *e)
 {
@@ -197,7 +203,7 @@ static int take_frames(session *s, bool changed, err *e)
     s->started = count > 0 && !changed;
     s->run.first = (s->run.every > 0 || s->live) && !s->started;
     const int failed = count > 0 && (tled_problem_start(&s->problem, &last, &s->warnings, e) ||
-                                     (!changed && frame_choice_fits(&s->frames, &last, in_name(s->stage.source), e)))
+                                     (!changed && frame_choice_fits(&s->frames, &last, where_from(s), e)))
                            ? -1
                            : 0;
     if (count > 0)
@@ -407,12 +413,14 @@ static int open_log(session *s, const struct options *o, err *e)
     return log_open(&s->log, o->log, &o->tsv, &s->m, s->run.point ? &s->run.point->log : NULL, e);
 }
 
-/* A run whose last state alone is wanted, to rest from rest, begins near its end if it can. */
+/* A run whose last state alone is wanted, to rest from rest, begins near its end if it can. A card has gone the whole
+ * way before processors have made the coarser models. */
 static int start_coarse(session *s, const struct options *o)
 {
     const bool shown = o->every > 0 || o->log, goes_on = o->restart || s->next_frame;
+    const bool is_card = strcmp(s->run.device->is.device, "cpu") != 0;
     coarse_told told = {0};
-    if (o->coarse || !s->run.adapt || o->dt > 0 || o->checkpoint || shown || goes_on)
+    if (o->coarse || is_card || !s->run.adapt || o->dt > 0 || o->checkpoint || shown || goes_on)
         return 0;
     s->coarse = !coarse_start(&s->run, &s->problem, &s->m, &told);
     words_coarse(s, &told);
