@@ -87,8 +87,8 @@ static void add_cross(double times, const double *a, const double *b, double *to
         to[i] += times * (a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3]);
 }
 
-/* With the columns a, b, n at rest and A, B, N now, F^-T has n . a, n . b and n . n as components along the dual columns
- * of (A, B, N), which are (B x N), (N x A) and (A x B) over their determinant. */
+/* With the columns a, b, n at rest and A, B, N now, F^-T has n . a, n . b and n . n as components along the dual
+ * columns of (A, B, N), which are (B x N), (N x A) and (A x B) over their determinant. */
 static void turn_corner(double was[3][3], double now[3][3], const double *n, double *sum)
 {
     double to[3] = {0}, area[3] = {0};
