@@ -11,7 +11,8 @@
 void normals_deform(const obj *o, const motion *m, const bone *carried, const bool *held, double *normal);
 
 /* The same where only the vertices are known, position (o->vertices x 3, in the OBJ's unit): F at a corner is that of
- * its face, which the two edges there and the unit normal between them tell. A corner without area there turns nothing. */
+ * its face, which the two edges there and the unit normal between them tell. A corner without area there turns
+ * nothing. */
 void normals_turn(const obj *o, const double *position, double *normal);
 
 #endif

@@ -133,7 +133,7 @@ static int check_files(const tool *t, err *e)
 
 static int take_options(const batch *b, ready *r, err *e)
 {
-    char *word[WORDS + 2] = {(char *)(uintptr_t)b->t->table->name};
+    char *word[WORDS + 2] = {r->text}; /* the first is none of the words */
     const int count = cut(r->text, word + 1, e);
     if (count < 0 || opt_parse_job(b->t->table, count + 1, word, r->options, e) < 0 || b->use->check(r->options, e))
         return -1;

@@ -1,7 +1,7 @@
 /* Which arrays the frames of a solver have, and which of them are stored as f32: --frames of tled-run and msds-run.
- * The solver offers what its frames can have, reads the list, and hands each frame over before it is written. Without a list
- * frames have all that is offered, as f64, but bound surfaces, which are not computed then. The creator owns a choice;
- * it borrows from the model.
+ * The solver offers what its frames can have, reads the list, and hands each frame over before it is written. Without
+ * a list frames have all that is offered, as f64, but bound surfaces, which are not computed then. The creator owns a
+ * choice; it borrows from the model.
  */
 #ifndef SINEW_FRAME_CHOICE_H
 #define SINEW_FRAME_CHOICE_H

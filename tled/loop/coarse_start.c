@@ -71,7 +71,8 @@ static int relax_level(const run_setup *r, const tled_problem *p, double *displa
 {
     run_setup setup;
     run_end end = {0};
-    level l = {displacement, 3 * p->nodes};
+    level l = {.numbers = 3 * p->nodes};
+    l.displacement = displacement;
     if (set_level(&setup, r, p, e))
         return -1;
     setup.context = &l;
@@ -98,6 +99,8 @@ static int begin_there(tled_problem *p, const coarse *c, const double *displacem
     return 0;
 }
 
+/* Each is an eighth of the one before: ten deep at most. */
+// NOLINTNEXTLINE(misc-no-recursion)
 static int start_from(const run_setup *r, tled_problem *p, const model *m, coarse_told *told, err *e)
 {
     err none = {0};

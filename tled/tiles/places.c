@@ -81,7 +81,8 @@ static void check_work(void *context, int64_t chunk, int64_t from, int64_t to)
 
 int places_find(const tled_problem *p, int32_t *part, int32_t *at, err *e)
 {
-    finder f = {.p = p, .part = part, .at = at};
+    finder f = {.p = p, .part = part};
+    f.at = at;
     atomic_init(&f.off, INT64_MAX);
     find_parts(p, part);
     pool_run(p->threads, p->nodes, CHUNK, place_work, &f);
