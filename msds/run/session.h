@@ -59,7 +59,7 @@ typedef struct session {
     executor_ahead ahead;
     pool *threads;
     msds_state *state;
-    frame_queue *queue; /* of frames on their way out */
+    frame_queue *queue;  /* of frames on their way out */
     frame_choice frames; /* the arrays that they have */
     inverted inverted;
     openness openness;
