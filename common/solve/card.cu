@@ -1,5 +1,5 @@
 #include <cuda_runtime.h>
-#include <stdbool.h>
+#include <pthread.h>
 #include <stdint.h>
 #include <stdio.h>
 
@@ -10,7 +10,7 @@ extern "C" {
 enum { LEAST = 75 }; /* compute capability that builds have code for: 10 major + minor */
 
 static char reason[200];
-static bool looked;
+static pthread_once_t looked = PTHREAD_ONCE_INIT;
 
 /* Whether this build has code for the card. */
 static cudaError_t look_at_capability(void)
@@ -25,12 +25,9 @@ static cudaError_t look_at_capability(void)
     return code;
 }
 
-const char *card_unusable(void)
+static void look(void)
 {
     int count = 0;
-    if (looked)
-        return *reason ? reason : NULL;
-    looked = true;
     cudaError_t code = cudaGetDeviceCount(&count);
     if (code == cudaSuccess && count < 1)
         snprintf(reason, sizeof reason, "there is no device");
@@ -44,6 +41,12 @@ const char *card_unusable(void)
     else if (code != cudaSuccess)
         snprintf(reason, sizeof reason, "%s", cudaGetErrorString(code));
     cudaGetLastError(); /* said: not to come out again of a later call */
+}
+
+/* Jobs of a batch ask at once. */
+const char *card_unusable(void)
+{
+    pthread_once(&looked, look);
     return *reason ? reason : NULL;
 }
 

@@ -82,6 +82,16 @@ is $? 2 "--coarse yes is refused"
 grep -q "coarse" "$T/said"
 is $? 0 "and said what was wrong"
 
+# A stream whose nodes are told to be elsewhere in the lattice than their elements.
+voxelise -q --unit mm -s 2.5 --volumes "$T/volumes" --materials "$T/materials" "$T/bar.obj" 2>"$T/said" |
+    attach -q --text --fibre axis --rigid-file "$T/wall.obj" 2>>"$T/said" |
+    awk '/^array node.lattice/ { print; getline; $0 = "7000000 0 0"; is = 1 } is && /^crc/ { is = 0; next } { print }' >"$T/model"
+rests off --rest 1e-3 -g 0.05,0,0
+grep -q 'no coarser model: nodes that are off the lattice' "$T/off.said"
+is $? 0 "nodes off the lattice: it begins from none, and says why"
+[ -n "$(steps off)" ]
+is $? 0 "and comes to rest"
+
 if [ -n "$DATA" ] && [ -s "$DATA/face/face_zyg.obj" ]; then
     voxelise -q --unit mm --origin -125,-125,-125 -s 4 "$DATA/face/face_zyg.obj" 2>"$T/said" | attach -q >"$T/model" 2>>"$T/said"
     both "the real face, smiling" 2e-3 --rest 1e-4 -m tissue.nu=0.45 -c zyg_xneg=0.1,zyg_xpos=0.1

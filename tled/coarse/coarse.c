@@ -54,6 +54,27 @@ static int64_t cell_place(const coarse *c, const int32_t *ijk)
     return place_of(c, at, 0);
 }
 
+/* The coarse node at a corner, v, of what a finer node lies between, by its place in the finer lattice; -1: none. */
+static int32_t parent_at(const coarse *c, const int32_t *at, int v)
+{
+    int64_t to[3];
+    for (int a = 0; a < 3; a++) {
+        to[a] = (int64_t)floor(((double)at[a] + lattice_vtk[v][a]) / 2) - c->low[a];
+        if (to[a] < 0 || to[a] > c->size[a])
+            return -1;
+    }
+    return c->node[place_of(c, to, 1)];
+}
+
+/* Whether all finer nodes lie between coarse ones. A model's node.lattice need not be that of its elements. */
+static bool has_parents(const coarse *c)
+{
+    for (int64_t i = 0; i < 8 * c->fine->nodes; i++)
+        if (parent_at(c, c->lattice + 3 * (i / 8), (int)(i % 8)) < 0)
+            return false;
+    return true;
+}
+
 static int find_box(coarse *c, const int32_t *cells, int64_t count, err *e)
 {
     int32_t low[3] = {INT32_MAX, INT32_MAX, INT32_MAX}, high[3] = {INT32_MIN, INT32_MIN, INT32_MIN};
@@ -107,7 +128,7 @@ static int find_places(coarse *c, const model *m, int64_t *elements, int64_t *no
     mark_nodes(c);
     *elements = number_marked(c->cell, box);
     *nodes = number_marked(c->node, corners);
-    return 0;
+    return has_parents(c) ? 0 : err_set(e, NULL, 0, "nodes that are off the lattice of the elements");
 }
 
 /* ---- Its model */
@@ -218,13 +239,8 @@ static int make_script(coarse *c, err *e)
 
 void coarse_parents(const coarse *c, int64_t n, int32_t parent[8])
 {
-    const int32_t *at = c->lattice + 3 * n;
-    for (int v = 0; v < 8; v++) {
-        int64_t to[3];
-        for (int a = 0; a < 3; a++)
-            to[a] = (int64_t)floor((at[a] + lattice_vtk[v][a]) / 2.) - c->low[a];
-        parent[v] = c->node[place_of(c, to, 1)];
-    }
+    for (int v = 0; v < 8; v++)
+        parent[v] = parent_at(c, c->lattice + 3 * n, v);
 }
 
 coarse *coarse_make(const tled_problem *fine, const model *m, err *e)

@@ -463,7 +463,7 @@ static int simulate(session *s, const struct options *o, const char *device, run
     progress_start(&s->progress, "tled-run", "steps", s->run.rest < 0 ? (double)s->run.steps : 0,
                    o->common.quiet || o->common.verbose);
     int result = s->live ? live_go(s, end, e) : tled_batch_run(s, end, e);
-    if (result && s->coarse && !s->folds.frames)
+    if (result && s->coarse && !s->next_frame)
         result = run_anew(s, o, end, e);
     progress_stop(&s->progress);
     if (s->live)
