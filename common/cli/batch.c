@@ -116,7 +116,7 @@ static int check_text(const char *text, err *e)
 
 /* ---- Jobs */
 
-/* What a job reads and writes has names; standard input is the model's, standard output no job's. */
+/* Checks that a job names its files: standard input has the model, and standard output is no place for a job. */
 static int check_files(const tool *t, err *e)
 {
     const opt *o;
@@ -147,11 +147,17 @@ static int take_options(const batch *b, ready *r, err *e)
     return 0;
 }
 
+/* Writes where a job's line is, as messages begin. */
+static void say_place(const batch *b, const job *j, char about[ABOUT])
+{
+    snprintf(about, ABOUT, "%.300s:%lld", b->path, (long long)j->line);
+}
+
 /* -1 with e filled; release() in both cases. */
 static int make_ready(const batch *b, const job *j, ready *r, err *e)
 {
     *r = (ready){.text = mem_text(j->text, e), .options = mem_array(1, (int64_t)b->use->size, "a job", e)};
-    snprintf(r->about, sizeof r->about, "%.300s:%lld", b->path, (long long)j->line);
+    say_place(b, j, r->about);
     if (!r->text || !r->options)
         return -1;
     memcpy(r->options, b->use->given, b->use->size);
@@ -169,7 +175,7 @@ static void say_failed(batch *b, job *j, const err *why)
 {
     char about[ABOUT];
     tool t = *b->t;
-    snprintf(about, sizeof about, "%.300s:%lld", b->path, (long long)j->line);
+    say_place(b, j, about);
     t.about = about;
     pthread_mutex_lock(&b->lock);
     progress_clear(&b->progress);
@@ -231,7 +237,7 @@ static int by_place(const void *a, const void *b)
     return places ? places : (x->line > y->line) - (x->line < y->line);
 }
 
-/* What one job writes is no other's. */
+/* Refuses a file that one job writes and another job writes or reads. */
 static int check_shared(batch *b, err *e)
 {
     if (b->files)

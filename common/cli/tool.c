@@ -325,7 +325,7 @@ int tool_table(const tool *t, const text_table *rows, err *e, const char *title,
     return o ? 0 : -1;
 }
 
-/* Whether nobody has given this warning; it is given now. */
+/* Notes a warning as given. Returns whether it was new. */
 static bool is_new(tool_told *told, const char *line)
 {
     bool found = false;

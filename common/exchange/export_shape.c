@@ -82,7 +82,7 @@ static int move_surface(export_shape *x, const double *u, err *e)
     return x->displacement ? 0 : -1;
 }
 
-/* What a solver has computed of the surface, or NULL. */
+/* Finds the surface's displacement that a solver computed. NULL: the frame has none. */
 static const model_array *own_displacement(const export_shape *x, const frame *f)
 {
     char name[MODEL_NAME + 20];

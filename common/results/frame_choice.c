@@ -109,7 +109,7 @@ static void list_one(char to[LIST], const char *name)
         snprintf(to + n, LIST - n, "%s%s", n ? ", " : "", name);
 }
 
-/* What there is: the words that mean something, then the arrays. */
+/* Lists what --frames can name: first the words that stand for arrays here, then the arrays. */
 static void list_offered(const frame_choice *c, char to[LIST])
 {
     to[0] = 0;
