@@ -463,20 +463,34 @@ static int64_t cuda_computed(const cuda_state *s)
     return s->method->computed(s);
 }
 
+/* A card loads a module's code when the first of its kernels is asked for. Of cards before the march nothing is asked. */
+static void cuda_load(void)
+{
+    int each = 0;
+    int64_t slots = 0;
+    cudaOccupancyMaxActiveBlocksPerMultiprocessor(&each, frame_kernel, FRAME_THREADS, 0);
+    cuda_look_load<real>();
+    cuda_march_slots<real>(MARCH_CUBES, false, &slots);
+    cudaGetLastError(); /* what fails is said where it is used */
+}
+
 enum { CUDA_FEATURES = EXECUTOR_USUAL | EXECUTOR_SLIDING | EXECUTOR_CONTACT | EXECUTOR_SELF_CONTACT };
 
-const tled_executor CUDA_EXECUTOR = {
-    .is = {.device = "cuda", .features = CUDA_FEATURES, .forms = TILES_FORMS, .unusable = card_unusable},
-    .create = cuda_create,
-    .destroy = cuda_destroy,
-    .step = cuda_step,
-    .get = cuda_get,
-    .save = cuda_save,
-    .restore = cuda_restore,
-    .reload = cuda_reload,
-    .snapshot = cuda_snapshot,
-    .fetch = cuda_fetch,
-    .monitor = cuda_monitor,
-    .bytes = cuda_bytes,
-    .crowded = cuda_crowded,
-    .computed = cuda_computed};
+const tled_executor CUDA_EXECUTOR = {.is = {.device = "cuda",
+                                            .features = CUDA_FEATURES,
+                                            .forms = TILES_FORMS,
+                                            .unusable = card_unusable,
+                                            .load = cuda_load},
+                                     .create = cuda_create,
+                                     .destroy = cuda_destroy,
+                                     .step = cuda_step,
+                                     .get = cuda_get,
+                                     .save = cuda_save,
+                                     .restore = cuda_restore,
+                                     .reload = cuda_reload,
+                                     .snapshot = cuda_snapshot,
+                                     .fetch = cuda_fetch,
+                                     .monitor = cuda_monitor,
+                                     .bytes = cuda_bytes,
+                                     .crowded = cuda_crowded,
+                                     .computed = cuda_computed};

@@ -506,7 +506,7 @@ static void end_session(session *s, tool *t, err *e)
     if (!t->done)
         end_output(s, t, e);
     end_checkpoints(s, e);
-    executor_ahead_wait(&s->ahead);
+    executor_ahead_end(&s->ahead);
     live_destroy(s->live);
     pool_destroy(s->threads);
     results_destroy(s->results);
