@@ -170,16 +170,35 @@ static real fourth(const cuda_state *s, bool is_displacement, int64_t k)
     return number;
 }
 
+typedef struct setting { /* of a field, from the model's order */
+    const cuda_state *s;
+    const field_layout *layout;
+    int field;
+    const double *from;
+} setting;
+
+static void set_work(void *context, int64_t chunk, int64_t from, int64_t to)
+{
+    const setting *m = (const setting *)context;
+    const field_layout *l = m->layout;
+    const bool has_fourth = m->field < CUDA_STEPPED && l->along == MARCH_ALONG;
+    real *staging = m->s->staging;
+    (void)chunk;
+    for (int64_t k = from; k < to; k++) {
+        for (int a = 0; a < l->columns; a++)
+            staging[layout_at(l, a, k)] = (real)m->from[l->columns * (int64_t)l->row[k] + a];
+        if (has_fourth) {
+            const real number = fourth(m->s, m->field == TLED_DISPLACEMENT, k);
+            memcpy(&staging[march_offset(3, l->stride) + MARCH_ALONG * k], &number, sizeof number);
+        }
+    }
+}
+
 static int set(cuda_state *s, int i, const double *from, err *e)
 {
     const field_layout l = layout_of(s, i);
-    for (int64_t k = 0; k < l.places; k++)
-        for (int a = 0; a < l.columns; a++)
-            s->staging[layout_at(&l, a, k)] = (real)from[l.columns * (int64_t)l.row[k] + a];
-    for (int64_t k = 0; i < CUDA_STEPPED && l.along == MARCH_ALONG && k < l.places; k++) {
-        const real number = fourth(s, i == TLED_DISPLACEMENT, k);
-        memcpy(&s->staging[march_offset(3, l.stride) + MARCH_ALONG * k], &number, sizeof number);
-    }
+    setting m = {s, &l, i, from};
+    pool_run(s->threads, l.places, COPY_CHUNK, set_work, &m);
     return CUDA_TRY(cudaMemcpy(s->field[i], s->staging, (size_t)l.numbers * sizeof(real), cudaMemcpyHostToDevice));
 }
 
