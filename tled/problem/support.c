@@ -150,13 +150,29 @@ static bool is_held(const tled_problem *p, int64_t node, unsigned components)
     return held;
 }
 
+typedef struct comparison {
+    const tled_problem *p;
+    bool differs;
+} comparison;
+
+static void compare_work(void *context, int64_t chunk, int64_t from, int64_t to)
+{
+    comparison *c = context;
+    bool differs = false;
+    (void)chunk;
+    for (const int32_t *hold = c->p->hold + 3 * from; hold < c->p->hold + 3 * to; hold += 3)
+        for (int a = 1; a < 3; a++)
+            differs |= (hold[a] != HOLD_FREE) != (hold[0] != HOLD_FREE);
+    if (differs)
+        __atomic_store_n(&c->differs, true, __ATOMIC_RELAXED);
+}
+
 /* Whether each node is held in all components or in none. */
 static bool is_held_alike(const tled_problem *p)
 {
-    bool alike = true;
-    for (int64_t i = 0; i < 3 * p->nodes; i++)
-        alike &= (p->hold[i] != HOLD_FREE) == (p->hold[i / 3 * 3] != HOLD_FREE);
-    return alike;
+    comparison c = {p, false};
+    pool_run(p->threads, p->nodes, NODES, compare_work, &c);
+    return !c.differs;
 }
 
 static void begin_work(void *context, int64_t chunk, int64_t from, int64_t to)
