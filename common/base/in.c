@@ -257,9 +257,9 @@ int64_t in_taken(const in *s)
     return s->taken;
 }
 
-/* Reads straight into the caller's memory: a large read needs no buffer, which is empty here; nor does what is left of a
- * very large one, behind which there may be another: else each would go through the buffer. Returns how many bytes came;
- * sets `ended` where none did. */
+/* Reads straight into the caller's memory: a large read needs no buffer, which is empty here; nor does what is left of
+ * a very large one, behind which there may be another: else each would go through the buffer. Returns how many bytes
+ * came; sets `ended` where none did. */
 static int64_t fetch_past(in *s, void *bytes, size_t size, err *e)
 {
     int64_t n = fetch(s, bytes, size < CHUNK ? size : CHUNK, e);

@@ -75,8 +75,8 @@ static void check_piece(block *b, model_type type, void *values, int64_t n)
 }
 
 /* Exactly size bytes of the payload, in memory that grows as they come: a length is only a claim. `extra` bytes more
- * are allocated. canonical: the type whose nan are made so, and whose values the item then says to be finite or not, and
- * within the range, if there is one, or not; or MODEL_TYPES. The caller frees it; NULL with e filled. */
+ * are allocated. canonical: the type whose nan are made so, and whose values the item then says to be finite or not,
+ * and within the range, if there is one, or not; or MODEL_TYPES. The caller frees it; NULL with e filled. */
 static void *take_grown(block *b, uint64_t size, size_t extra, model_type canonical, err *e)
 {
     unsigned char *bytes = NULL;

@@ -23,8 +23,8 @@ const char *check_text(const char *text);
 int check_array(const model_array *a, bool finite, const char *where, int64_t line, err *e);
 int check_indexed(const model *m, const model_array *a, const char *where, int64_t line, err *e);
 
-/* What indices have to be: from `low` on and below `end`. There are none where end is -1: the array is not of indices, or
- * m does not have their axis (yet). */
+/* What indices have to be: from `low` on and below `end`. There are none where end is -1: the array is not of indices,
+ * or m does not have their axis (yet). */
 typedef struct check_range {
     int64_t low, end;
 } check_range;

@@ -482,13 +482,14 @@ static int64_t cuda_computed(const cuda_state *s)
     return s->method->computed(s);
 }
 
-/* A card loads a module's code when the first of its kernels is asked for. Of cards before the march nothing is asked. */
+/* A card loads a module's code when the first of its kernels is asked for. The march's is not loaded by cards that have
+ * no kernels of it. */
 static void cuda_load(void)
 {
     int each = 0;
     int64_t slots = 0;
     cudaOccupancyMaxActiveBlocksPerMultiprocessor(&each, frame_kernel, FRAME_THREADS, 0);
-    cuda_look_load<real>();
+    cuda_look_load();
     cuda_march_slots<real>(MARCH_CUBES, false, &slots);
     cudaGetLastError(); /* what fails is said where it is used */
 }

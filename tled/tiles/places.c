@@ -75,7 +75,8 @@ static void end_work(void *context, int64_t chunk, int64_t from, int64_t to)
 /* The root of each part is its lowest node. */
 static void find_parts(const tled_problem *p, int32_t *part)
 {
-    parts w = {p, part};
+    parts w = {.p = p};
+    w.part = part;
     pool_run(p->threads, p->nodes, CHUNK, begin_work, &w);
     pool_run(p->threads, p->elements, CHUNK, join_work, &w);
     pool_run(p->threads, p->nodes, CHUNK, end_work, &w);
