@@ -257,7 +257,8 @@ int64_t in_taken(const in *s)
     return s->taken;
 }
 
-/* Reads straight into the caller's memory: a large read needs no buffer, which is empty here. Returns how many bytes
+/* Reads straight into the caller's memory: a large read needs no buffer, which is empty here; nor does what is left of
+ * a very large one, behind which there may be another: else each would go through the buffer. Returns how many bytes
  * came; sets `ended` where none did. */
 static int64_t fetch_past(in *s, void *bytes, size_t size, err *e)
 {
@@ -283,7 +284,7 @@ int64_t in_read(in *s, void *bytes, size_t size, err *e)
     while (got < size) {
         if (s->at == s->filled && s->ended)
             break;
-        if (s->at == s->filled && !s->gzip && size - got >= MUCH) {
+        if (s->at == s->filled && !s->gzip && (size - got >= MUCH || size >= CHUNK)) {
             int64_t n = fetch_past(s, (char *)bytes + got, size - got, e);
             if (n < 0)
                 return -1;

@@ -25,8 +25,9 @@ static const unsigned char magic[MAGIC] = {BINARY_FIRST, 's', 'i', 'n', 'e', 'w'
 typedef struct block {
     item_source *s;
     item *it;
-    uint64_t left; /* of the payload */
-    uint32_t crc;  /* so far */
+    uint64_t left;     /* of the payload */
+    uint32_t crc;      /* so far */
+    check_range range; /* of an array's indices, or none */
 } block;
 
 /* Exactly size bytes of the stream. */
@@ -66,9 +67,16 @@ static int more_room(unsigned char **bytes, uint64_t *have, uint64_t size, size_
     return 0;
 }
 
+/* Of n values of an array that were just read, and are in the cache. */
+static void check_piece(block *b, model_type type, void *values, int64_t n)
+{
+    b->it->finite &= item_canonical(type, values, n);
+    b->it->within &= b->range.end >= 0 && check_within(b->range, type, values, n);
+}
+
 /* Exactly size bytes of the payload, in memory that grows as they come: a length is only a claim. `extra` bytes more
- * are allocated. canonical: the type whose nan are made so, and whose values the item then says to be finite or not, or
- * MODEL_TYPES. The caller frees it; NULL with e filled. */
+ * are allocated. canonical: the type whose nan are made so, and whose values the item then says to be finite or not,
+ * and within the range, if there is one, or not; or MODEL_TYPES. The caller frees it; NULL with e filled. */
 static void *take_grown(block *b, uint64_t size, size_t extra, model_type canonical, err *e)
 {
     unsigned char *bytes = NULL;
@@ -84,7 +92,7 @@ static void *take_grown(block *b, uint64_t size, size_t extra, model_type canoni
         if (take(b, bytes + done, n, e))
             goto fail;
         if (canonical != MODEL_TYPES)
-            b->it->finite &= item_canonical(canonical, bytes + done, (int64_t)(n / model_type_size(canonical)));
+            check_piece(b, canonical, bytes + done, (int64_t)(n / model_type_size(canonical)));
         done += n;
     } while (done < size);
     return bytes;
@@ -172,7 +180,8 @@ static int read_array(block *b, err *e)
         return item_error(b->s, b->it, e, "its length is not that of its rows and columns; the stream is damaged");
     if (item_passes(b->s, b->it, n))
         return pass_over(b, e);
-    b->it->finite = true;
+    b->it->finite = b->it->within = true;
+    b->range = check_range_of(&b->s->axes, a);
     a->data = take_grown(b, b->left, 0, a->type, e);
     return a->data ? 0 : -1;
 }
@@ -243,7 +252,7 @@ static int binary_read(item_source *s, item *it, err *e)
     memcpy(it->block.type, head, 4);
     memcpy(&it->block.flags, head + 4, sizeof it->block.flags);
     memcpy(&it->block.length, head + 8, sizeof it->block.length);
-    block b = {s, it, it->block.length, checksum_add(0, head, HEAD)};
+    block b = {.s = s, .it = it, .left = it->block.length, .crc = checksum_add(0, head, HEAD)};
     if (find_kind(&b, e) || read_payload(&b, e))
         return -1;
     if (b.left)

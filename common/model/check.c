@@ -91,40 +91,51 @@ static int64_t index_at(const model_array *a, int64_t i)
     return a->type == MODEL_I32 ? a->i32[i] : a->i64[i];
 }
 
-/* Whether all is within [low, count): one plain pass, for speed; who failed is looked for afterwards. */
-static bool indices_good(const model_array *a, int64_t n, int64_t low, int64_t count)
+check_range check_range_of(const model *m, const model_array *a)
 {
+    const known *k = a->unit[0] == '@' ? known_find(a->name) : NULL;
+    const int64_t low = k && (k->flags & KNOWN_EVERY) ? 0 : -1;
+    const bool whole = a->type == MODEL_I32 || a->type == MODEL_I64;
+    return (check_range){low, whole && a->unit[0] == '@' ? model_count(m, a->unit + 1) : -1};
+}
+
+/* One plain pass, for speed: who failed is looked for afterwards. An i32 is compared as how far it is above `low`,
+ * without a sign. */
+bool check_within(check_range r, model_type type, const void *values, int64_t n)
+{
+    const int32_t *narrow = values;
+    const int64_t *wide = values, most = INT64_C(1) << 31;
+    const uint32_t low = (uint32_t)r.low, span = (uint32_t)((r.end < most ? r.end : most) - r.low);
     bool bad = false;
-    if (a->type == MODEL_I32)
+    if (type == MODEL_I32)
         for (int64_t i = 0; i < n; i++)
-            bad |= (a->i32[i] < low) | (a->i32[i] >= count);
+            bad |= (uint32_t)narrow[i] - low >= span;
     else
         for (int64_t i = 0; i < n; i++)
-            bad |= (a->i64[i] < low) | (a->i64[i] >= count);
+            bad |= (wide[i] < r.low) | (wide[i] >= r.end);
     return !bad;
 }
 
-static int check_indices(const site *s, const model *m, const known *k)
+static int check_indices(const site *s, const model *m)
 {
     const model_array *a = s->a;
-    int64_t count = model_count(m, a->unit + 1), n = a->rows * a->columns;
-    int64_t low = k && (k->flags & KNOWN_EVERY) ? 0 : -1;
-    if (count < 0)
+    const check_range r = check_range_of(m, a);
+    if (model_count(m, a->unit + 1) < 0)
         return err_set(s->e, s->where, s->line,
                        "array %s points to axis %s, which is not there; expected its axis line", a->name, a->unit + 1);
     if (a->type != MODEL_I32 && a->type != MODEL_I64)
         return err_set(s->e, s->where, s->line, "array %s of indices has type %s; expected i32 or i64", a->name,
                        model_type_name(a->type));
-    if (indices_good(a, n, low, count))
+    if (check_within(r, a->type, a->data, a->rows * a->columns))
         return 0;
     int64_t i = 0;
-    while (index_at(a, i) >= low && index_at(a, i) < count)
+    while (index_at(a, i) >= r.low && index_at(a, i) < r.end)
         i++;
     int64_t row = i / a->columns;
     return err_set(s->e, s->where, row_line(s, row),
                    "array %s, row %" PRId64 ": %" PRId64 " is not an index into axis %s; expected %" PRId64
                    " to %" PRId64,
-                   a->name, row, index_at(a, i), a->unit + 1, low, count - 1);
+                   a->name, row, index_at(a, i), a->unit + 1, r.low, r.end - 1);
 }
 
 static int check_strings(const site *s)
@@ -164,7 +175,7 @@ int check_array(const model_array *a, bool finite, const char *where, int64_t li
 int check_indexed(const model *m, const model_array *a, const char *where, int64_t line, err *e)
 {
     const site s = {a, where, line, e};
-    return a->unit[0] == '@' ? check_indices(&s, m, known_find(a->name)) : 0;
+    return a->unit[0] == '@' ? check_indices(&s, m) : 0;
 }
 
 int model_check(const model *m, const model_array *a, const char *where, int64_t line, err *e)

@@ -23,6 +23,16 @@ const char *check_text(const char *text);
 int check_array(const model_array *a, bool finite, const char *where, int64_t line, err *e);
 int check_indexed(const model *m, const model_array *a, const char *where, int64_t line, err *e);
 
+/* What indices have to be: from `low` on and below `end`. There are none where end is -1: the array is not of indices,
+ * or m does not have their axis (yet). */
+typedef struct check_range {
+    int64_t low, end;
+} check_range;
+check_range check_range_of(const model *m, const model_array *a);
+
+/* Whether all n values, i32 or i64, are within a range that there is. */
+bool check_within(check_range r, model_type type, const void *values, int64_t n);
+
 /* rows x columns, or -1 where that many things of `size` bytes cannot be. */
 int64_t check_count(int64_t rows, int32_t columns, size_t size);
 

@@ -32,6 +32,7 @@ typedef struct item {
     double time;
     model_array array;
     bool finite; /* of array: it is known that all values are finite */
+    bool within; /* likewise, that all are indices in their range (check_range) */
     bool passed; /* its values were passed over: array has none */
     model_block block;
 } item;

@@ -1,9 +1,11 @@
 #include "model/stage.h"
 
 #include "base/mem.h"
+#include "base/thread.h"
 #include "model/model_share.h"
 
 #include <inttypes.h>
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -38,18 +40,68 @@ int stage_read(stage *s, model *m, err *e)
     return s->reader ? model_read(s->reader, m, e) : -1;
 }
 
+static int add_provenance(const stage *s, model *m, err *e)
+{
+    return model_prov_add(m, s->t->table->name, SINEW_VERSION, s->t->provenance ? s->t->provenance : "", e);
+}
+
 int stage_write(stage *s, model *m, err *e)
 {
-    if (model_prov_add(m, s->t->table->name, SINEW_VERSION, s->t->provenance ? s->t->provenance : "", e))
+    if (add_provenance(s, m, e))
         return -1;
     return model_write(s->writer, m, e);
+}
+
+static int64_t bytes_of(const model *m)
+{
+    int64_t bytes = 0;
+    for (int i = 0; i < m->arrays.count; i++)
+        bytes += m->arrays.v[i].rows * m->arrays.v[i].columns * (int64_t)model_type_size(m->arrays.v[i].type);
+    return bytes;
+}
+
+static void *write_work(void *argument)
+{
+    stage *s = argument;
+    model_write(s->writer, s->beside, &s->beside_error);
+    return NULL;
+}
+
+int stage_write_beside(stage *s, model *m, err *e)
+{
+    enum { LARGE = 1 << 22 }; /* bytes: fewer are written in a few milliseconds */
+    sigset_t all, before;
+    if (bytes_of(m) < LARGE)
+        return stage_write(s, m, e);
+    if (add_provenance(s, m, e))
+        return -1;
+    sigfillset(&all); /* signals are the main thread's */
+    pthread_sigmask(SIG_BLOCK, &all, &before);
+    s->beside = m;
+    const int code = thread_start(&s->thread, write_work, s);
+    pthread_sigmask(SIG_SETMASK, &before, NULL);
+    if (!code)
+        return 0;
+    s->beside = NULL;
+    return model_write(s->writer, m, e);
+}
+
+int stage_written(stage *s, err *e)
+{
+    if (s->beside)
+        pthread_join(s->thread, NULL);
+    s->beside = NULL;
+    if (!s->beside_error.status)
+        return 0;
+    *e = s->beside_error;
+    return -1;
 }
 
 /* Those that came before, and were kept for several stages. */
 static int64_t pass_kept(stage *s, model_writer *w, frame *last, err *e)
 {
     for (int64_t i = 0; w && i < s->kept_count; i++)
-        if (model_write_frame(w, &s->kept[i], e))
+        if (stage_written(s, e) || model_write_frame(w, &s->kept[i], e))
             return -1;
     if (last && s->kept_count && frame_share(last, &s->kept[s->kept_count - 1], e))
         return -1;
@@ -67,7 +119,7 @@ static int64_t pass_frames(stage *s, const model *m, model_writer *w, frame *las
         return pass_kept(s, w, last, e);
     while (got > 0) {
         got = model_read_frame(s->reader, m, &f, e);
-        if (got > 0 && w && model_write_frame(w, &f, e))
+        if (got > 0 && w && (stage_written(s, e) || model_write_frame(w, &f, e)))
             got = -1;
         count += got > 0;
         if (got > 0 && last) {
@@ -154,6 +206,9 @@ static void close_failed(stage *s, const tool *t, const err *e)
 
 void stage_close(stage *s, const tool *t, err *e)
 {
+    err unwritten = {0};
+    if (stage_written(s, &unwritten) && !e->status)
+        *e = unwritten;
     /* A model counts only once its end was seen: what is left in the pipe is read, and may yet say `fail`. */
     if (!e->status && s->reader)
         pass_frames(s, NULL, NULL, NULL, e);

@@ -8,6 +8,8 @@
 #include "cli/tool.h"
 #include "model/stream.h"
 
+#include <pthread.h>
+
 typedef struct stage {
     const tool *t;
     in *source;
@@ -17,6 +19,9 @@ typedef struct stage {
     model_writer *writer;
     const frame *kept; /* in place of a reader: the frames that came, borrowed */
     int64_t kept_count;
+    const model *beside; /* that a thread writes, until stage_written; NULL: none */
+    pthread_t thread;
+    err beside_error;
 } stage;
 
 /* Opens what the tool has: the output first (-o, --text, -z, from t's options; binary to a terminal is refused), so
@@ -28,6 +33,15 @@ int stage_read(stage *s, model *m, err *e);
 
 /* Appends the tool's provenance to m and writes it. */
 int stage_write(stage *s, model *m, err *e);
+
+/* The same of a large model on a thread of its own, while the caller goes on. Until stage_written nobody else uses the
+ * writer or the sink, m stays as it is, and s stays where it is. What goes wrong in writing comes out of
+ * stage_written. */
+int stage_write_beside(stage *s, model *m, err *e);
+
+/* Waits until the model is written: before anything else is written. What closes a stage does so too. Of none, and
+ * again: nothing. -1 with e filled, each time, where the model could not be written. */
+int stage_written(stage *s, err *e);
 
 /* Copies the frames that are left in to out. */
 int stage_copy_frames(stage *s, const model *m, err *e);

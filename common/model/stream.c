@@ -30,14 +30,20 @@ typedef struct order {
     bool any;
 } order;
 
+/* Where an array of the body stood: its line or block. */
+typedef struct array_place {
+    int64_t at;
+    bool within; /* its indices are known to be in their range */
+} array_place;
+
 struct model_reader {
     item_source from;
     item next; /* read, not yet taken, where `waiting` */
     bool waiting, ended;
     bool gives_cut; /* see model_reader_give_cut */
     bool lets_follow;
-    err cut;         /* of the next frame: the stream was cut behind the one that was given */
-    int64_t *places; /* where the body's arrays stood: lines or blocks */
+    err cut;             /* of the next frame: the stream was cut behind the one that was given */
+    array_place *places; /* of the body's arrays */
     int64_t place_capacity;
     pattern pattern;
     order order;
@@ -259,7 +265,7 @@ static int add_array(model_reader *r, model *m, item *it, err *e)
         return -1;
     if (!it->passed && check_part(r, it, e))
         return -1;
-    r->places[m->arrays.count] = it->at;
+    r->places[m->arrays.count] = (array_place){it->at, it->within};
     it->array.line = r->from.how->lines ? it->at : 0;
     return model_arrays_take(&m->arrays, &it->array, e) ? 0 : -1;
 }
@@ -303,7 +309,7 @@ int model_read(model_reader *r, model *m, err *e)
             return -1;
     }
     for (int i = 0; i < m->arrays.count; i++)
-        if (m->arrays.v[i].data && check_rest(r, m, &m->arrays.v[i], r->places[i], e))
+        if (m->arrays.v[i].data && !r->places[i].within && check_rest(r, m, &m->arrays.v[i], r->places[i].at, e))
             return -1;
     return r->next.kind == ITEM_END ? finish(r, &r->next, e) : 0;
 }

@@ -149,8 +149,11 @@ static const executor *likely(const executor *const *table, const char *device, 
 
 static void *make_ready(void *argument)
 {
-    const executor_ahead *a = argument;
-    a->of->unusable();
+    executor_ahead *a = argument;
+    const bool usable = !a->of->unusable();
+    sem_post(&a->known);
+    if (usable && a->of->load)
+        a->of->load();
     return NULL;
 }
 
@@ -164,14 +167,25 @@ void executor_ahead_start(executor_ahead *a, const executor *const *table, const
     sigfillset(&all); /* signals are the main thread's */
     pthread_sigmask(SIG_BLOCK, &all, &before);
     a->of = of;
-    if (thread_start(&a->thread, make_ready, a))
+    sem_init(&a->known, 0, 0);
+    a->waits = !thread_start(&a->thread, make_ready, a);
+    if (!a->waits)
         a->of = NULL; /* executor_choose does it */
     pthread_sigmask(SIG_SETMASK, &before, NULL);
 }
 
 void executor_ahead_wait(executor_ahead *a)
 {
-    if (a->of)
-        pthread_join(a->thread, NULL);
-    a->of = NULL;
+    while (a->waits && sem_wait(&a->known)) /* until no signal came between */
+        ;
+    a->waits = false;
+}
+
+void executor_ahead_end(executor_ahead *a)
+{
+    if (!a->of)
+        return;
+    pthread_join(a->thread, NULL);
+    sem_destroy(&a->known);
+    *a = (executor_ahead){.of = NULL};
 }

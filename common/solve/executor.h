@@ -8,6 +8,7 @@
 #include "base/err.h"
 
 #include <pthread.h>
+#include <semaphore.h>
 
 #include <stddef.h>
 #include <stdint.h>
@@ -58,6 +59,9 @@ typedef struct executor {
     uint32_t forms;     /* that it is compiled for: bit i for form i of the solver */
     /* Why it cannot be used on this machine, or NULL. Initialises the device: called only where it may be chosen. */
     const char *(*unusable)(void);
+    /* Loads what the first steps on the device would wait for: in any thread, while others use it. Only where it can be
+     * used; what fails here fails there again. NULL: there is nothing to load. */
+    void (*load)(void);
 } executor;
 
 enum { EXECUTOR_FORMS = 32 }; /* the most of any solver: a bit each */
@@ -77,10 +81,12 @@ const executor *executor_choose(const executor *const *table, const char *device
                                 size_t size, err *e);
 
 /* An executor's device that is made ready on a thread of its own, while the model is read: a card's context takes a
- * third of a second. The caller owns it; zeroed: none. */
+ * third of a second, and its kernels some hundredths. The caller owns it; zeroed: none. It stays where it is. */
 typedef struct executor_ahead {
     const executor *of;
+    bool waits; /* it has not been waited for */
     pthread_t thread;
+    sem_t known; /* whether the device can be used */
 } executor_ahead;
 
 /* Starts with the executor that executor_choose would take, as far as what is needed is known; not with one on
@@ -88,7 +94,10 @@ typedef struct executor_ahead {
 void executor_ahead_start(executor_ahead *a, const executor *const *table, const char *device,
                           const executor_need *need);
 
-/* Waits until it is ready: before executor_choose, and before the process ends. Again, and of none: nothing. */
+/* Waits until it is known whether the device can be used: before executor_choose. Again, and of none: nothing. */
 void executor_ahead_wait(executor_ahead *a);
+
+/* Waits until all is loaded, and ends the thread: before the process ends. Again, and of none: nothing. */
+void executor_ahead_end(executor_ahead *a);
 
 #endif

@@ -349,7 +349,7 @@ int session_change(session *s, session_part part, err *e)
 
 void session_free(session *s)
 {
-    executor_ahead_wait(&s->ahead);
+    executor_ahead_end(&s->ahead);
     broadcast_close(s->socket);
     compare_free(s->other, s->device);
     if (s->state)

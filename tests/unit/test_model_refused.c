@@ -339,8 +339,98 @@ static void test_fail(void)
     }
 }
 
+/* Adds a block with an array behind its payload's beginning. */
+static void add_block(unsigned char *to, size_t *n, const char *type, const hand *begins, const void *array,
+                      size_t size)
+{
+    const uint32_t flags = 0;
+    const uint64_t length = begins->n + size;
+    const size_t from = *n;
+    const struct {
+        const void *at;
+        size_t size;
+    } part[] = {{type, 4}, {&flags, sizeof flags}, {&length, sizeof length}, {begins->b, begins->n}, {array, size}};
+    for (size_t i = 0; i < sizeof part / sizeof *part; i++) {
+        if (part[i].size)
+            memcpy(to + *n, part[i].at, part[i].size);
+        *n += part[i].size;
+    }
+    const uint32_t crc = (uint32_t)crc32(0, to + from, (uInt)(*n - from));
+    memcpy(to + *n, &crc, sizeof crc);
+    *n += sizeof crc;
+}
+
+static void add_axis(unsigned char *to, size_t *n, const char *name, uint64_t count)
+{
+    hand h = {.n = 0};
+    put_text(&h, name);
+    put(&h, &count, sizeof count);
+    add_block(to, n, "AXIS", &h, NULL, 0);
+}
+
+static void add_indices(unsigned char *to, size_t *n, const char *name, const int32_t *of, size_t count)
+{
+    const uint32_t type = MODEL_I32, columns = 1;
+    hand h = {.n = 0};
+    put_text(&h, name);
+    put_text(&h, "@node");
+    put_text(&h, "mark");
+    put(&h, &type, sizeof type);
+    put(&h, &columns, sizeof columns);
+    add_block(to, n, "ARRY", &h, of, count * sizeof *of);
+}
+
+/* Two arrays of indices, each read in several pieces, of which those at `bad` are wrong. late: their axis comes behind
+ * them. */
+static void indices(const int64_t bad[2][2], bool late, const char *what, const char *name)
+{
+    enum { ROWS = 200000, NODES = 1000 };
+    unsigned char *to = calloc(2, ROWS * sizeof(int32_t) + 1000);
+    int32_t *of = calloc(ROWS, sizeof *of);
+    hand h;
+    err e;
+    put_magic(&h, 1, 0);
+    size_t n = h.n;
+    if (!to || !of)
+        return;
+    memcpy(to, h.b, n);
+    add_axis(to, &n, "mark", ROWS);
+    if (!late)
+        add_axis(to, &n, "node", NODES);
+    for (int k = 0; k < 2; k++) {
+        for (int32_t i = 0; i < ROWS; i++)
+            of[i] = i % (NODES + 1) - 1;
+        for (int j = 0; j < 2; j++)
+            if (bad[k][j] >= 0)
+                of[bad[k][j]] = j ? NODES : -2;
+        add_indices(to, &n, k ? "second" : "first", of, ROWS);
+    }
+    if (late)
+        add_axis(to, &n, "node", NODES);
+    h.n = 0;
+    add_block(to, &n, "DONE", &h, NULL, 0);
+    const int status = refused(to, n, &e);
+    ok(*what ? says(&e, what) : !status, "%s: %s", name, *what ? e.text : "taken");
+    free(to);
+    free(of);
+}
+
+/* The first is told, whichever piece it is in, and whatever is known when. */
+static void test_bad_indices(void)
+{
+    for (int late = 0; late < 2; late++) {
+        indices((const int64_t[2][2]){{-1, -1}, {-1, -1}}, late, "", "indices of several pieces");
+        indices((const int64_t[2][2]){{150000, -1}, {3, -1}}, late, "array first, row 150000: -2 is not an index",
+                "the first array's");
+        indices((const int64_t[2][2]){{-1, -1}, {199999, -1}}, late, "array second, row 199999: -2 is not", "the last");
+        indices((const int64_t[2][2]){{150000, 70000}, {-1, -1}}, late,
+                "array first, row 70000: 1000 is not an index into axis node; expected -1 to 999", "the first of two");
+    }
+}
+
 int main(void)
 {
+    test_bad_indices();
     test_blocks();
     test_arrays();
     version(1, 0, "");

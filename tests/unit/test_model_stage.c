@@ -294,8 +294,67 @@ static void test_terminals(void)
     close(master);
 }
 
+/* ---- written beside ---- */
+
+/* A model with an array of 8 MB of numbers, and one of indices, of which the last is wrong where that is asked for. */
+static void make_large(model *m, bool wrong, err *e)
+{
+    enum { ROWS = 1000000 };
+    model_array *numbers = NULL, *indices = NULL;
+    if (!model_axis_add(m, "mark", ROWS, e))
+        numbers = model_add_as(m, "mark.number", MODEL_F64, "1", "mark", 1, e);
+    if (numbers)
+        indices = model_add_as(m, "mark.next", MODEL_I32, "@mark", "mark", 1, e);
+    for (int32_t i = 0; indices && i < ROWS; i++) {
+        model_find(m, "mark.number")->f64[i] = 1. / (i + 1);
+        indices->i32[i] = ROWS - 1 - i;
+    }
+    if (indices && wrong)
+        indices->i32[ROWS - 1] = ROWS;
+}
+
+/* Writes it, two frames and an end into memory, the caller's to discard; NULL with e filled. */
+static out *written(int write(stage *s, model *m, err *e), bool wrong, err *e)
+{
+    opt_common common = {0};
+    const tool t = {.table = &filter_table, .common = &common};
+    const frame frames[2] = {{.index = 1, .time = 0}, {.index = 2, .time = 1}};
+    frame last = {0};
+    model m = {0};
+    out *to = out_memory(e);
+    stage s = {.t = &t, .sink = to, .kept = frames, .kept_count = 2};
+    make_large(&m, wrong, e);
+    s.writer = to ? model_writer_open(to, false, e) : NULL;
+    bool done = s.writer && !write(&s, &m, e) && stage_last_frame(&s, &m, true, &last, e) == 2;
+    done = done && !model_write_end(s.writer, e);
+    model_writer_close(s.writer);
+    frame_free(&last);
+    model_free(&m);
+    if (done)
+        return to;
+    out_discard(to);
+    return NULL;
+}
+
+static void test_beside(void)
+{
+    err e = {0}, said[2] = {{0}};
+    size_t size[2] = {0};
+    out *alone = written(stage_write, false, &e), *beside = written(stage_write_beside, false, &e);
+    const unsigned char *one = alone ? out_bytes(alone, &size[0]) : NULL;
+    const unsigned char *other = beside ? out_bytes(beside, &size[1]) : NULL;
+    ok(one && other && size[0] > 12000000 && size[0] == size[1] && !memcmp(one, other, size[0]),
+       "a model of %zu bytes that a thread writes, and frames behind it: the same bytes %s", size[1], e.text);
+    out_discard(alone);
+    out_discard(beside);
+    ok(!written(stage_write, true, &said[0]) && !written(stage_write_beside, true, &said[1]), "an index is wrong");
+    ok(strstr(said[0].text, "mark.next, row 999999") && !strcmp(said[0].text, said[1].text) && said[1].status == 1,
+       "a thread that writes says so alike: %s", said[1].text);
+}
+
 int main(void)
 {
+    test_beside();
     test_copies();
     test_failures();
     test_looker();

@@ -3,12 +3,13 @@
  * in another order, and where there are slits, of which bricks that none comes to are told nothing. And in rows: the
  * same.
  */
-// needs: tled/tiles/tiles.c tled/tiles/bricks.c tled/tiles/tile_split.c
+// needs: tled/tiles/tiles.c tled/tiles/bricks.c tled/tiles/tile_split.c tled/tiles/tile_parts.c
 // needs: tled/tiles/lattice_sheet.c tled/tiles/places.c  tled/*/*.c
 #include "mesh/lattice.h"
 #include "physics/element_cut.h"
 #include "tled/cpu/cpu.h"
 #include "tled/cpu/rows.h"
+#include "tled/tiles/tile_parts.h"
 #include "tled/tiles/tiles.h"
 
 #include "tap.h"
@@ -193,7 +194,7 @@ static int reorder(tiles *t, err *e)
         exit(1);
     for (int64_t n = 0, half = (t->nodes + 1) / 2; n < t->nodes; n++)
         order[n] = (int32_t)(n < half ? 2 * n : 2 * (n - half) + 1);
-    const int failed = tiles_reorder(t, order, e);
+    const int failed = tiles_reorder(t, order, NULL, e);
     free(order);
     return failed;
 }

@@ -588,6 +588,12 @@ template <class S> cudaError_t cuda_save_start(const cuda_view<S> *v, const cuda
     return card_start(save_kernel<S>, {blocks, SAVE_THREADS, 0, stream}, *v, *saved);
 }
 
+void cuda_look_load(void)
+{
+    int each = 0;
+    cudaOccupancyMaxActiveBlocksPerMultiprocessor(&each, sums_kernel, SUM_THREADS, 0);
+}
+
 template cudaError_t cuda_look_start<float>(const cuda_look<float> *, tled_sums *, cudaStream_t);
 template cudaError_t cuda_look_start<double>(const cuda_look<double> *, tled_sums *, cudaStream_t);
 template cudaError_t cuda_save_start<float>(const cuda_view<float> *, const cuda_saved<float> *, cudaStream_t);

@@ -170,16 +170,35 @@ static real fourth(const cuda_state *s, bool is_displacement, int64_t k)
     return number;
 }
 
+typedef struct setting { /* of a field, from the model's order */
+    const cuda_state *s;
+    const field_layout *layout;
+    int field;
+    const double *from;
+} setting;
+
+static void set_work(void *context, int64_t chunk, int64_t from, int64_t to)
+{
+    const setting *m = (const setting *)context;
+    const field_layout *l = m->layout;
+    const bool has_fourth = m->field < CUDA_STEPPED && l->along == MARCH_ALONG;
+    real *staging = m->s->staging;
+    (void)chunk;
+    for (int64_t k = from; k < to; k++) {
+        for (int a = 0; a < l->columns; a++)
+            staging[layout_at(l, a, k)] = (real)m->from[l->columns * (int64_t)l->row[k] + a];
+        if (has_fourth) {
+            const real number = fourth(m->s, m->field == TLED_DISPLACEMENT, k);
+            memcpy(&staging[march_offset(3, l->stride) + MARCH_ALONG * k], &number, sizeof number);
+        }
+    }
+}
+
 static int set(cuda_state *s, int i, const double *from, err *e)
 {
     const field_layout l = layout_of(s, i);
-    for (int64_t k = 0; k < l.places; k++)
-        for (int a = 0; a < l.columns; a++)
-            s->staging[layout_at(&l, a, k)] = (real)from[l.columns * (int64_t)l.row[k] + a];
-    for (int64_t k = 0; i < CUDA_STEPPED && l.along == MARCH_ALONG && k < l.places; k++) {
-        const real number = fourth(s, i == TLED_DISPLACEMENT, k);
-        memcpy(&s->staging[march_offset(3, l.stride) + MARCH_ALONG * k], &number, sizeof number);
-    }
+    setting m = {s, &l, i, from};
+    pool_run(s->threads, l.places, COPY_CHUNK, set_work, &m);
     return CUDA_TRY(cudaMemcpy(s->field[i], s->staging, (size_t)l.numbers * sizeof(real), cudaMemcpyHostToDevice));
 }
 
@@ -463,20 +482,35 @@ static int64_t cuda_computed(const cuda_state *s)
     return s->method->computed(s);
 }
 
+/* A card loads a module's code when the first of its kernels is asked for. The march's is not loaded by cards that have
+ * no kernels of it. */
+static void cuda_load(void)
+{
+    int each = 0;
+    int64_t slots = 0;
+    cudaOccupancyMaxActiveBlocksPerMultiprocessor(&each, frame_kernel, FRAME_THREADS, 0);
+    cuda_look_load();
+    cuda_march_slots<real>(MARCH_CUBES, false, &slots);
+    cudaGetLastError(); /* what fails is said where it is used */
+}
+
 enum { CUDA_FEATURES = EXECUTOR_USUAL | EXECUTOR_SLIDING | EXECUTOR_CONTACT | EXECUTOR_SELF_CONTACT };
 
-const tled_executor CUDA_EXECUTOR = {
-    .is = {.device = "cuda", .features = CUDA_FEATURES, .forms = TILES_FORMS, .unusable = card_unusable},
-    .create = cuda_create,
-    .destroy = cuda_destroy,
-    .step = cuda_step,
-    .get = cuda_get,
-    .save = cuda_save,
-    .restore = cuda_restore,
-    .reload = cuda_reload,
-    .snapshot = cuda_snapshot,
-    .fetch = cuda_fetch,
-    .monitor = cuda_monitor,
-    .bytes = cuda_bytes,
-    .crowded = cuda_crowded,
-    .computed = cuda_computed};
+const tled_executor CUDA_EXECUTOR = {.is = {.device = "cuda",
+                                            .features = CUDA_FEATURES,
+                                            .forms = TILES_FORMS,
+                                            .unusable = card_unusable,
+                                            .load = cuda_load},
+                                     .create = cuda_create,
+                                     .destroy = cuda_destroy,
+                                     .step = cuda_step,
+                                     .get = cuda_get,
+                                     .save = cuda_save,
+                                     .restore = cuda_restore,
+                                     .reload = cuda_reload,
+                                     .snapshot = cuda_snapshot,
+                                     .fetch = cuda_fetch,
+                                     .monitor = cuda_monitor,
+                                     .bytes = cuda_bytes,
+                                     .crowded = cuda_crowded,
+                                     .computed = cuda_computed};

@@ -267,7 +267,7 @@ static int march_take(cuda_state *s, bool *takes, err *e)
     *takes = s->march.units > 0 && s->march.units < UINT32_MAX / (TABLE_STEPS + 1); /* units of a launch are counted */
     *takes = *takes && (SINGLE || march_pays(&s->march, s->tiles.cells, slots));
     s->walkers = s->march.units < slots ? s->march.units : slots;
-    return *takes ? tiles_reorder(&s->tiles, s->march.order, e) : 0;
+    return *takes ? tiles_reorder(&s->tiles, s->march.order, s->threads, e) : 0;
 }
 
 /* The state node by node, a node's components along the march's axes. */

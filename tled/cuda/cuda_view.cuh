@@ -277,4 +277,7 @@ template <class S> struct cuda_saved {
 
 template <class S> cudaError_t cuda_save_start(const cuda_view<S> *v, const cuda_saved<S> *saved, cudaStream_t stream);
 
+/* Has the card load the code of looks and of what is saved. */
+void cuda_look_load(void);
+
 #endif

@@ -47,8 +47,8 @@ typedef struct cutter {
     uint8_t *warps;       /* of the layer's warps, those with cells */
     bool *special;        /* the layer has special cells */
     int32_t *slot;        /* its number, or -1; before: 0 where a node is owned */
-    int32_t *sheet;       /* nodes: sheets_find's; NULL: there is one, and part is of all. Else there are: */
     int32_t *which;       /* elements: its special cell, from 1 on, or 0 */
+    int32_t *sheet;       /* nodes: sheets_find's; NULL: there is one, and part is of all. Else there are: */
     bool *inner;          /* nodes: all corners of its elements are in its sheet */
     int margin;           /* layers around a box: of nodes that its cells have, and it does not */
     bool shared;          /* two nodes or cells have one place */
@@ -296,7 +296,8 @@ static void mark_if_special(cutter *c, int64_t element)
 {
     spot at[SPOTS];
     const march_cell cell = march_cell_of(c->m, c->p, element);
-    for (int k = march_cell_special(c->m, c->p, element, &cell) ? cell_spots(c, element, at) : 0; k--;)
+    c->which[element] = march_cell_special(c->m, c->p, element, &cell);
+    for (int k = c->which[element] ? cell_spots(c, element, at) : 0; k--;)
         __atomic_store_n(&c->special[at[k].layer], true, __ATOMIC_RELAXED);
 }
 
@@ -305,7 +306,9 @@ static int mark_special(cutter *c)
     const tled_problem *p = c->p;
     c->m->plain = march_plain_of(p);
     c->special = mem_array(c->cells, sizeof *c->special, "the march", c->e);
-    if (!c->special)
+    if (!c->which)
+        c->which = mem_array(p->elements, sizeof *c->which, "the march", c->e);
+    if (!c->special || !c->which)
         return -1;
     mark_all(c, p->elements, mark_if_special);
     return 0;
@@ -383,66 +386,36 @@ static int put_words(cutter *c)
     return 0;
 }
 
-/* Orders the nodes as words own them, and says in all words where theirs stands. */
-static int order_nodes(cutter *c)
+/* Numbers the special cells, those that are cut first, and the layers that have any. */
+static void number_special(cutter *c)
 {
     march *m = c->m;
-    int32_t count = 0;
-    m->order = mem_array(c->p->nodes, sizeof *m->order, "the march", c->e);
-    if (!m->order)
-        return -1;
-    for (const uint32_t *layer = m->word; layer < m->word + MARCH_WORDS * m->layers; layer += MARCH_WORDS)
-        for (int32_t j = 1; j <= OWNED; j++)
-            for (int32_t i = 1; i <= OWNED; i++)
-                if (layer[march_word_of(i, j)] & MARCH_OWN)
-                    m->order[layer[march_word_of(i, j)] & MARCH_NODE] = count++;
-    m->tip_first = count;
-    m->tips = c->p->nodes - count;
-    for (int32_t n = 0; n < c->p->nodes; n++)
-        if (is_tip(c, n))
-            m->order[n] = count++;
-    for (uint32_t *word = m->word; word < m->word + MARCH_WORDS * m->layers; word++)
-        if (*word & MARCH_THERE)
-            *word = (*word & ~(uint32_t)MARCH_NODE) | (uint32_t)m->order[*word & MARCH_NODE];
-    return 0;
+    int32_t cuts = 0, others = (int32_t)c->p->cut.count;
+    for (int64_t i = 0; i < c->p->elements; i++)
+        if (c->which[i])
+            c->which[i] = 1 + (tled_cut(c->p, i) ? cuts++ : others++);
+    m->cuts = c->p->cut.count;
+    m->cells = cuts + others - m->cuts;
+    for (int64_t i = 0; i < c->cells; i++)
+        if (c->special[i])
+            m->detail[c->slot[i]] = (int32_t)m->details++;
 }
 
-/* The number of an element's special cell: those that are cut come first. m->cells: there are so many so far. */
-static int64_t special_number(const cutter *c, int64_t element, int64_t *cuts)
-{
-    const tled_problem *p = c->p;
-    const int64_t others = c->m->cells++ - *cuts;
-    return tled_cut(p, element) ? (*cuts)++ : p->cut.count + others;
-}
-
-/* The special cells: first counted, then, with their arrays made, filled. */
-static void list_special(cutter *c)
+static void put_if_special(cutter *c, int64_t element)
 {
     march *m = c->m;
     spot at[SPOTS];
-    int64_t cuts = 0;
-    m->cells = 0;
-    for (int64_t i = 0; i < c->p->elements; i++) {
-        const march_cell cell = march_cell_of(m, c->p, i);
-        if (!march_cell_special(m, c->p, i, &cell))
-            continue;
-        const int64_t number = special_number(c, i, &cuts);
-        if (m->cell)
-            m->cell[number] = cell;
-        if (m->cell && number < m->cuts)
-            m->cut[number] = march_cut_of(m, tled_cut(c->p, i));
-        if (c->which)
-            c->which[i] = (int32_t)number + 1;
-        for (int k = cell_spots(c, i, at); k--;) {
-            const int64_t layer = c->slot[at[k].layer];
-            const int word = march_word_of(at[k].i, at[k].j);
-            if (m->detail[layer] < 0)
-                m->detail[layer] = (int32_t)m->details++;
-            if (!m->cell)
-                continue;
-            m->word[MARCH_WORDS * layer + word] |= MARCH_SPECIAL;
-            m->which[MARCH_THREADS * (int64_t)m->detail[layer] + word] = (int32_t)number + 1;
-        }
+    const int32_t which = c->which[element];
+    if (!which)
+        return;
+    m->cell[which - 1] = march_cell_of(m, c->p, element);
+    if (which <= m->cuts)
+        m->cut[which - 1] = march_cut_of(m, tled_cut(c->p, element));
+    for (int k = cell_spots(c, element, at); k--;) {
+        const int64_t layer = c->slot[at[k].layer];
+        const int word = march_word_of(at[k].i, at[k].j);
+        m->word[MARCH_WORDS * layer + word] |= MARCH_SPECIAL;
+        m->which[MARCH_THREADS * (int64_t)m->detail[layer] + word] = which;
     }
 }
 
@@ -453,15 +426,13 @@ static int put_special(cutter *c)
     if (!m->detail)
         return -1;
     memset(m->detail, 0xff, (size_t)(m->layers + MARCH_AHEAD) * sizeof *m->detail);
-    list_special(c);
+    number_special(c);
     m->which = mem_array(m->details, MARCH_THREADS * sizeof *m->which, "the march", c->e);
-    m->cuts = c->p->cut.count;
     m->cut = mem_array(m->cuts, sizeof *m->cut, "the march", c->e);
     m->cell = mem_array(m->cells, sizeof *m->cell, "the march", c->e);
     if (!m->which || !m->cut || !m->cell)
         return -1;
-    if (m->cells)
-        list_special(c);
+    mark_all(c, c->p->elements, put_if_special);
     return 0;
 }
 
@@ -497,8 +468,7 @@ static int part_sheets(cutter *c)
     const tled_problem *p = c->p;
     c->sheet = mem_array(p->nodes, sizeof *c->sheet, "the march", c->e);
     c->inner = mem_array(p->nodes, sizeof *c->inner, "the march", c->e);
-    c->which = mem_array(p->elements, sizeof *c->which, "the march", c->e);
-    const int32_t sheets = c->sheet && c->which && c->inner ? sheets_find(p, c->part, c->at, c->sheet, c->e) : -1;
+    const int32_t sheets = c->sheet && c->inner ? sheets_find(p, c->part, c->at, c->sheet, c->e) : -1;
     if (sheets < 0)
         return -1;
     int32_t *number = mem_array(c->parts * sheets, sizeof *number, "the march", c->e); /* of its box, from 1 on */
@@ -556,9 +526,10 @@ static int cut_sheets(cutter *c, march_runs *runs, bool *suited)
 static int finish(cutter *c, const march_runs *runs, int64_t slots)
 {
     march *m = c->m;
-    if (order_nodes(c) || put_special(c) || put_along(c) || march_runs_cut(runs, slots, &m->unit, &m->units, c->e) ||
-        march_tips_list(m, c->p, c->sheet, c->which, c->e) || march_tips_add(m, c->e) ||
-        (c->sheet && march_turns_order(m, c->sheet, c->p->nodes, c->e)) || march_near_find(m, c->p->nodes, c->e))
+    if (march_order_nodes(m, c->p->nodes, c->sheet, c->p->threads, c->e) || put_special(c) || put_along(c) ||
+        march_runs_cut(runs, slots, &m->unit, &m->units, c->e) || march_tips_list(m, c->p, c->sheet, c->which, c->e) ||
+        march_tips_add(m, c->e) || (c->sheet && march_turns_order(m, c->sheet, c->p->nodes, c->e)) ||
+        march_near_find(m, c->p->nodes, c->e))
         return -1;
     m->cost = runs->all;
     m->computed += 8. * (double)m->tips / (double)c->p->elements;

@@ -1,6 +1,7 @@
 #include "tled/cuda/march_units.h"
 
 #include "base/mem.h"
+#include "tled/tiles/lattice_sheet.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -109,4 +110,73 @@ void march_free(march *m)
     free(m->along);
     free(m->tip);
     memset(m, 0, sizeof *m);
+}
+
+/* The order of nodes that is being made. */
+typedef struct ordering {
+    march *m;
+    int32_t *next; /* layers: how many nodes each owns; then the next number of one of these */
+} ordering;
+
+/* Gives numbers to the nodes that a layer's words own, from *next on; order: NULL: only counts them. */
+static void number_layer(const uint32_t *word, int32_t *next, int32_t *order)
+{
+    for (int32_t j = 1; j < MARCH_SIDE; j++)
+        for (int32_t i = 1; i < MARCH_SIDE; i++) {
+            const uint32_t own = word[march_word_of(i, j)];
+            if (own & MARCH_OWN && order)
+                order[own & MARCH_NODE] = *next;
+            *next += (own & MARCH_OWN) != 0;
+        }
+}
+
+static void count_work(void *context, int64_t chunk, int64_t from, int64_t to)
+{
+    const ordering *o = context;
+    (void)chunk;
+    for (int64_t i = from; i < to; i++)
+        number_layer(o->m->word + MARCH_WORDS * i, &o->next[i], NULL);
+}
+
+static void number_work(void *context, int64_t chunk, int64_t from, int64_t to)
+{
+    const ordering *o = context;
+    (void)chunk;
+    for (int64_t i = from; i < to; i++)
+        number_layer(o->m->word + MARCH_WORDS * i, &o->next[i], o->m->order);
+}
+
+static void place_work(void *context, int64_t chunk, int64_t from, int64_t to)
+{
+    const march *m = ((const ordering *)context)->m;
+    (void)chunk;
+    for (uint32_t *word = m->word + MARCH_WORDS * from; word < m->word + MARCH_WORDS * to; word++)
+        if (*word & MARCH_THERE)
+            *word = (*word & ~(uint32_t)MARCH_NODE) | (uint32_t)m->order[*word & MARCH_NODE];
+}
+
+int march_order_nodes(march *m, int64_t nodes, const int32_t *sheet, pool *threads, err *e)
+{
+    enum { LAYERS = 64 };
+    int32_t count = 0;
+    ordering o = {m, mem_array(m->layers, sizeof *o.next, "the march", e)};
+    m->order = mem_array(nodes, sizeof *m->order, "the march", e);
+    if (m->order && o.next) {
+        pool_run(threads, m->layers, LAYERS, count_work, &o);
+        for (int64_t i = 0; i < m->layers; i++) {
+            const int32_t owned = o.next[i];
+            o.next[i] = count;
+            count += owned;
+        }
+        pool_run(threads, m->layers, LAYERS, number_work, &o);
+        m->tip_first = count;
+        m->tips = nodes - count;
+        for (int64_t n = 0; sheet && n < nodes; n++)
+            if (sheet[n] == SHEET_TIP)
+                m->order[n] = count++;
+        pool_run(threads, m->layers, LAYERS, place_work, &o);
+    }
+    const int result = m->order && o.next ? 0 : -1;
+    free(o.next);
+    return result;
 }

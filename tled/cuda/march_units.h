@@ -1,6 +1,7 @@
-/* Runs of layers of a march's columns, and how they are cut into units for a card: march.h says by what model. Those of
- * first sheets are cut as without further ones, whose units come on top: so all have their turns as long after those
- * near them as without. The creator owns the runs; what march_runs_cut makes is its caller's.
+/* The layers of a march in a row: the order of nodes that they own; and runs of layers of its columns, and how they are
+ * cut into units for a card: march.h says by what model. Those of first sheets are cut as without further ones, whose
+ * units come on top: so all have their turns as long after those near them as without. The creator owns the runs; what
+ * march_runs_cut makes is its caller's.
  */
 #ifndef SINEW_MARCH_UNITS_H
 #define SINEW_MARCH_UNITS_H
@@ -19,6 +20,10 @@ typedef struct march_runs {
     int64_t costs, costs_capacity;
     double all; /* of runs that are not of further sheets */
 } march_runs;
+
+/* Orders the nodes as words own them, behind them the tips, and says in all words where theirs stands. sheet: of each
+ * node: SHEET_TIP, or not; NULL: there are no tips. -1 with e filled. */
+int march_order_nodes(march *m, int64_t nodes, const int32_t *sheet, pool *threads, err *e);
 
 /* Warps that a layer's mask says. */
 int march_warps(uint8_t mask);

@@ -6,6 +6,7 @@
 #include <pthread.h>
 #include <signal.h>
 #include <stdlib.h>
+#include <string.h>
 
 enum { FRAMES = 2, RING = TLED_SLOTS + FRAMES };
 
@@ -22,6 +23,7 @@ struct frame_writer {
     tled_state *state;
     frame_writer_write *write;
     void *context;
+    const fields *fields;
     field_values frame[FRAMES]; /* by number: what is being fetched, and what is being written */
     int slot[RING];             /* what is sent */
     double time[RING];
@@ -46,12 +48,22 @@ static int put(frame_writer *w, int64_t index, err *e)
     return w->write(w->context, w->time[index % RING], &w->frame[index % FRAMES], e);
 }
 
+/* Touches the memory of the first frame, which every run has, before it is there: new pages take a while. */
+static void touch_first(frame_writer *w)
+{
+    for (int i = 0; i < FIELDS_MOST; i++)
+        if (w->frame[0].of[i])
+            memset(w->frame[0].of[i], 0, (size_t)fields_size(w->fields, i) * sizeof *w->frame[0].of[i]);
+}
+
 /* Does its work with the frames that are ready for it, until there are no more to come. After one that failed, it only
  * counts. */
 static void *work(void *context)
 {
     const stage *s = context;
     frame_writer *w = s->w;
+    if (s->work == fetch)
+        touch_first(w);
     pthread_mutex_lock(&w->lock);
     for (;;) {
         /* Nothing is ready, and more may come; or there is no room for one more. */
@@ -109,6 +121,7 @@ frame_writer *frame_writer_create(const tled_problem *p, const tled_executor *de
     w->state = state;
     w->write = write;
     w->context = context;
+    w->fields = &p->fields;
     w->whole = INT64_MAX;
     w->stage[0] = (stage){w, fetch, &w->sent, &w->fetched};
     w->stage[1] = (stage){w, put, &w->fetched, &w->written};

@@ -79,6 +79,8 @@ static int sort_loads(tled_problem *p, const loads *l, err *e)
     p->force_share = mem_array(l->count, sizeof *p->force_share, "the forces", e);
     if (!p->force_start || !p->force_curve || !p->force_spring || !p->force_share)
         return -1;
+    if (!l->count)
+        return 0;
     /* Counts two places on, so that filling moves each start to where it belongs. */
     for (int64_t i = 0; i < l->count; i++)
         p->force_start[l->list[i].node + 2]++;

@@ -365,14 +365,41 @@ static int make_laws(tled_problem *p, const model *m, err *e)
     return status;
 }
 
+enum { CHUNK = 1 << 14 }; /* nodes */
+
+typedef struct holding {
+    tled_problem *p;
+    const uint8_t *rigid; /* nodes, or NULL */
+    int64_t held;
+} holding;
+
+static void hold_work(void *context, int64_t chunk, int64_t from, int64_t to)
+{
+    const holding *h = context;
+    (void)chunk;
+    for (int64_t n = from; n < to; n++)
+        for (int a = 0; a < 3; a++)
+            h->p->hold[3 * n + a] = h->rigid && h->rigid[n] ? HOLD_STILL : HOLD_FREE;
+}
+
+static void count_work(void *context, int64_t chunk, int64_t from, int64_t to)
+{
+    holding *h = context;
+    int64_t held = 0;
+    (void)chunk;
+    for (const int32_t *of = h->p->hold + 3 * from; of < h->p->hold + 3 * to; of += 3)
+        held += of[0] != HOLD_FREE || of[1] != HOLD_FREE || of[2] != HOLD_FREE;
+    __atomic_fetch_add(&h->held, held, __ATOMIC_RELAXED);
+}
+
 /* Rigid nodes stay where they are, but for components that the script displaces. */
 static void make_holds(tled_problem *p, const model *m)
 {
     const model_array *rigid = model_find(m, "node.rigid");
+    holding h = {p, rigid ? rigid->u8 : NULL, 0};
     for (int64_t i = 0; i < films_count(p) * 3; i++)
         p->hold[3 * p->nodes + i] = HOLD_STILL;
-    for (int64_t i = 0; i < p->nodes * 3; i++)
-        p->hold[i] = rigid && rigid->u8[i / 3] ? HOLD_STILL : HOLD_FREE;
+    pool_run(p->threads, p->nodes, CHUNK, hold_work, &h);
     for (int64_t c = 0; c < p->script->curves; c++) {
         const script_curve *curve = &p->script->curve[c];
         const bool prescribes = curve->verb == SCRIPT_DISPLACE || curve->verb == SCRIPT_MOVE;
@@ -382,9 +409,8 @@ static void make_holds(tled_problem *p, const model *m)
                 if (curve->mask & 1u << a)
                     p->hold[3 * (int64_t)p->script->node[curve->node_first + i] + a] = hold;
     }
-    p->held = 0;
-    for (int64_t n = 0; n < p->nodes; n++)
-        p->held += p->hold[3 * n] != HOLD_FREE || p->hold[3 * n + 1] != HOLD_FREE || p->hold[3 * n + 2] != HOLD_FREE;
+    pool_run(p->threads, p->nodes, CHUNK, count_work, &h);
+    p->held = h.held;
 }
 
 static void find_slides(tled_problem *p, const model *m)

@@ -186,6 +186,12 @@ static double go_on(const tled_problem *p, int64_t from, int64_t to, double high
     return highest;
 }
 
+/* Whether an element's square does not depend on what came before it. */
+static bool is_plain(const tled_problem *p)
+{
+    return !p->cut.count && !p->borders.count && !p->fibres.of;
+}
+
 /* Chunks that are clearly below the highest before them change nothing, and are passed over: the result is that of
  * one element after the other, to the last bit. */
 static double pass_over(const squares *s, int32_t *volume)
@@ -193,7 +199,7 @@ static double pass_over(const squares *s, int32_t *volume)
     const tled_problem *p = s->p;
     double highest = 0;
     for (int64_t from = 0, c = 0; from < p->elements; from += CHUNK, c++)
-        if (!(s->of[c] * (1 + 1e-9) < highest))
+        if (!(is_plain(p) ? s->of[c] <= highest : s->of[c] * (1 + 1e-9) < highest))
             highest = go_on(p, from, p->elements - from < CHUNK ? p->elements : from + CHUNK, highest, volume);
     return highest;
 }
@@ -206,8 +212,7 @@ double step_elements_at_rest(const tled_problem *p, int32_t *volume)
             *volume = p->element_volume[p->conforming->stiffest];
         return p->conforming->square;
     }
-    const bool alike = !p->cut.count && !p->borders.count && !p->fibres.of; /* nothing that takes long */
-    const bool alone = alike || !p->threads || pool_threads(p->threads) < 2;
+    const bool alone = !p->threads || pool_threads(p->threads) < 2;
     squares s = {p, alone ? NULL : mem_array(pool_chunks(p->elements, CHUNK), sizeof *s.of, "the step", &ignored)};
     if (!s.of)
         return go_on(p, 0, p->elements, 0, volume);

@@ -9,38 +9,93 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A search outwards: nodes in the order in which they were reached. */
+enum { CHUNK = 256, NODES = 4096 }; /* nodes of a queue, which have elements each; nodes */
+
+/* A search outwards: nodes step by step. Steps do not depend on the order of nodes within one, which threads share. */
 typedef struct search {
+    const tled_problem *p;
     int32_t *steps, *queue; /* nodes: from where it began, or -1; nodes */
     uint8_t *spread;        /* elements: whether all of its nodes were reached from one of them */
-    int64_t count;
+    int64_t count;          /* of the queue */
+    int64_t from;           /* of the queue: those that are as far as is gone on from */
+    unsigned components;    /* that it begins from nodes held in, as bits */
+    bool is_shared;         /* by threads */
 } search;
 
-static void reach_node(search *s, int32_t node, int32_t step)
+/* Nodes that a thread reached, on their way to the queue. */
+typedef struct reached {
+    search *s;
+    int count;
+    int32_t node[CHUNK];
+} reached;
+
+static void flush(reached *r)
 {
-    if (s->steps[node] >= 0)
-        return;
-    s->steps[node] = step;
-    s->queue[s->count++] = node;
+    const int64_t at = __atomic_fetch_add(&r->s->count, r->count, __ATOMIC_RELAXED);
+    memcpy(r->s->queue + at, r->node, (size_t)r->count * sizeof *r->node);
+    r->count = 0;
 }
 
-/* Goes on from node `at` of the queue: a node is one step farther than the nearest node of an element that it is in.
- * The first of an element's nodes is its nearest, so that the others reach nothing through it. */
-static void spread(const tled_problem *p, search *s, int64_t at)
+/* Whether this thread is the first to reach a node. One that is alone spares the lock, which holds up all its reads. */
+static bool is_first(const search *s, int32_t node, int32_t step)
 {
-    for (; at < s->count; at++) {
-        int64_t node = s->queue[at];
-        const int64_t first = p->corner_start ? p->corner_start[node] : 8 * node;
-        const int64_t end = p->corner_start ? p->corner_start[node + 1] : first + 8;
-        for (int64_t i = first; i < end && p->corner[i] < p->elements * 8; i++) {
-            const int64_t element = p->corner[i] / 8;
-            if (s->spread[element])
-                continue;
-            s->spread[element] = 1;
-            for (int c = 0; c < 8; c++)
-                reach_node(s, p->element_node[8 * element + c], s->steps[node] + 1);
-        }
+    int32_t none = -1, *at = &s->steps[node];
+    if (__atomic_load_n(at, __ATOMIC_RELAXED) >= 0)
+        return false;
+    if (s->is_shared)
+        return __atomic_compare_exchange_n(at, &none, step, false, __ATOMIC_RELAXED, __ATOMIC_RELAXED);
+    *at = step;
+    return true;
+}
+
+static void reach_node(reached *r, int32_t node, int32_t step)
+{
+    if (!is_first(r->s, node, step))
+        return;
+    if (r->count == CHUNK)
+        flush(r);
+    r->node[r->count++] = node;
+}
+
+/* Goes on from a node: another is one step farther than the nearest node of an element that it is in. The first of an
+ * element's nodes is its nearest, so that the others reach nothing through it. */
+static void spread_from(reached *r, int64_t node)
+{
+    const tled_problem *p = r->s->p;
+    const int32_t step = __atomic_load_n(&r->s->steps[node], __ATOMIC_RELAXED) + 1;
+    const int64_t first = p->corner_start ? p->corner_start[node] : 8 * node;
+    const int64_t end = p->corner_start ? p->corner_start[node + 1] : first + 8;
+    for (int64_t i = first; i < end && p->corner[i] < p->elements * 8; i++) {
+        uint8_t *spread = &r->s->spread[p->corner[i] / 8];
+        if (__atomic_load_n(spread, __ATOMIC_RELAXED))
+            continue;
+        __atomic_store_n(spread, 1, __ATOMIC_RELAXED);
+        for (int c = 0; c < 8; c++)
+            reach_node(r, p->element_node[p->corner[i] / 8 * 8 + c], step);
     }
+}
+
+static void spread_work(void *context, int64_t chunk, int64_t from, int64_t to)
+{
+    reached r = {.s = context};
+    (void)chunk;
+    for (int64_t at = from; at < to; at++)
+        spread_from(&r, r.s->queue[r.s->from + at]);
+    flush(&r);
+}
+
+/* Goes on from node `at` of the queue and those behind it, which are equally far. Returns how many steps away the
+ * farthest is from where it began; 0: there are none. */
+static int32_t spread(search *s, int64_t at)
+{
+    for (s->from = at; s->from < s->count;) {
+        const int64_t end = s->count;
+        pool_run(s->p->threads, end - s->from, CHUNK, spread_work, s);
+        if (s->count == end)
+            return s->steps[s->queue[end - 1]];
+        s->from = end;
+    }
+    return 0;
 }
 
 static double diagonal(const tled_problem *p)
@@ -63,9 +118,12 @@ static bool is_pushed(const tled_problem *p, int64_t node)
 }
 
 /* What the search from held nodes did not reach, part by part. */
-static void find_loose(const tled_problem *p, search *s, support *of)
+static void find_loose(search *s, support *of)
 {
+    const tled_problem *p = s->p;
     of->first = -1;
+    if (s->count == p->nodes)
+        return;
     for (int64_t i = 0; i < p->elements; i++)
         if (s->steps[p->element_node[8 * i]] < 0) {
             of->first = of->first < 0 ? i : of->first;
@@ -74,9 +132,11 @@ static void find_loose(const tled_problem *p, search *s, support *of)
     for (int64_t n = 0; n < p->nodes; n++)
         if (s->steps[n] < 0) {
             int64_t at = s->count;
+            reached r = {.s = s};
             of->loose++;
-            reach_node(s, (int32_t)n, 0);
-            spread(p, s, at);
+            reach_node(&r, (int32_t)n, 0);
+            flush(&r);
+            spread(s, at);
             for (; at < s->count; at++)
                 of->pushed |= is_pushed(p, s->queue[at]);
         }
@@ -90,33 +150,60 @@ static bool is_held(const tled_problem *p, int64_t node, unsigned components)
     return held;
 }
 
+typedef struct comparison {
+    const tled_problem *p;
+    bool differs;
+} comparison;
+
+static void compare_work(void *context, int64_t chunk, int64_t from, int64_t to)
+{
+    comparison *c = context;
+    bool differs = false;
+    (void)chunk;
+    for (const int32_t *hold = c->p->hold + 3 * from; hold < c->p->hold + 3 * to; hold += 3)
+        for (int a = 1; a < 3; a++)
+            differs |= (hold[a] != HOLD_FREE) != (hold[0] != HOLD_FREE);
+    if (differs)
+        __atomic_store_n(&c->differs, true, __ATOMIC_RELAXED);
+}
+
 /* Whether each node is held in all components or in none. */
 static bool is_held_alike(const tled_problem *p)
 {
-    bool alike = true;
-    for (int64_t i = 0; i < 3 * p->nodes; i++)
-        alike &= (p->hold[i] != HOLD_FREE) == (p->hold[i / 3 * 3] != HOLD_FREE);
-    return alike;
+    comparison c = {p, false};
+    pool_run(p->threads, p->nodes, NODES, compare_work, &c);
+    return !c.differs;
+}
+
+static void begin_work(void *context, int64_t chunk, int64_t from, int64_t to)
+{
+    reached r = {.s = context};
+    (void)chunk;
+    for (int64_t n = from; n < to; n++) {
+        r.s->steps[n] = -1;
+        if (is_held(r.s->p, n, r.s->components))
+            reach_node(&r, (int32_t)n, 0);
+    }
+    flush(&r);
 }
 
 /* A search from the nodes that are held in any of these components (bits). Returns how many steps away the farthest
  * is. */
-static int32_t search_from_held(const tled_problem *p, search *s, unsigned components)
+static int32_t search_from_held(search *s, unsigned components)
 {
+    const tled_problem *p = s->p;
+    reached r = {.s = s};
     s->count = 0;
-    for (int64_t n = 0; n < p->nodes; n++)
-        s->steps[n] = -1;
+    s->components = components;
     memset(s->spread, 0, (size_t)p->elements);
-    for (int64_t n = 0; n < p->nodes; n++)
-        if (is_held(p, n, components))
-            reach_node(s, (int32_t)n, 0);
+    pool_run(p->threads, p->nodes, NODES, begin_work, s);
     for (int64_t i = 0; i < p->slides; i++) /* bone holds them along its normal, which is of any component */
         if (!p->slide_lifts || !p->slide_lifts[i])
-            reach_node(s, p->slide[i], 0);
+            reach_node(&r, p->slide[i], 0);
     for (int64_t i = 0; p->films && i < p->films->nodes; i++) /* films hold all components */
-        reach_node(s, p->films->node[i], 0);
-    spread(p, s, 0);
-    return s->count ? s->steps[s->queue[s->count - 1]] : 0;
+        reach_node(&r, p->films->node[i], 0);
+    flush(&r);
+    return spread(s, 0);
 }
 
 /* Of gravity's largest component: what is no more has come of turning it. */
@@ -124,8 +211,9 @@ static const double rounding = 1e-9;
 
 /* The first element that gravity pulls along an axis, and that the search from nodes held along that axis did not
  * reach; or -1. */
-static int64_t find_falling(const tled_problem *p, const search *s, int axis)
+static int64_t find_falling(const search *s, int axis)
 {
+    const tled_problem *p = s->p;
     const script_curve *g = p->gravity < 0 ? NULL : &p->script->curve[p->gravity];
     double along = 0, largest = 0;
     for (int32_t i = 0; g && i < 3 * g->key_count; i++) {
@@ -141,12 +229,12 @@ static int64_t find_falling(const tled_problem *p, const search *s, int axis)
 }
 
 /* Components one by one: each has waves of its own between the nodes that are held in it. */
-static int32_t search_components(const tled_problem *p, search *s, support *of)
+static int32_t search_components(search *s, support *of)
 {
     int32_t farthest = 0;
     for (int a = 0; a < 3; a++) {
-        const int32_t steps = search_from_held(p, s, 1u << a);
-        const int64_t falling = find_falling(p, s, a);
+        const int32_t steps = search_from_held(s, 1u << a);
+        const int64_t falling = find_falling(s, a);
         farthest = steps > farthest ? steps : farthest;
         if (of->falling < 0 && falling >= 0) {
             of->falling = falling;
@@ -158,17 +246,19 @@ static int32_t search_components(const tled_problem *p, search *s, support *of)
 
 int support_of(const tled_problem *p, support *of, err *e)
 {
-    search s = {mem_array(p->nodes, sizeof *s.steps, "what is held", e),
-                mem_array(p->nodes, sizeof *s.queue, "what is held", e),
-                mem_array(p->elements, sizeof *s.spread, "what is held", e), 0};
+    search s = {.p = p,
+                .steps = mem_array(p->nodes, sizeof *s.steps, "what is held", e),
+                .queue = mem_array(p->nodes, sizeof *s.queue, "what is held", e),
+                .spread = mem_array(p->elements, sizeof *s.spread, "what is held", e),
+                .is_shared = p->threads && pool_threads(p->threads) > 1};
     const bool done = s.steps && s.queue && s.spread;
     *of = (support){.falling = -1};
     if (done) {
         const bool alike = is_held_alike(p);
-        const int32_t apart = alike ? 0 : search_components(p, &s, of), whole = search_from_held(p, &s, 7);
+        const int32_t apart = alike ? 0 : search_components(&s, of), whole = search_from_held(&s, 7);
         const int32_t farthest = alike && s.count ? whole + !whole : apart; /* where all is held, one */
         of->reach = farthest ? farthest * fmax(p->side[0], fmax(p->side[1], p->side[2])) : diagonal(p);
-        find_loose(p, &s, of);
+        find_loose(&s, of);
     }
     free(s.steps);
     free(s.queue);

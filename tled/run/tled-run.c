@@ -272,7 +272,7 @@ static void end_output(session *s, const tool *t, err *e)
 {
     if (s->checkpoint && s->log.file && !e->status)
         log_store(&s->log, e);
-    if (s->checkpoint && s->stage.sink)
+    if (s->checkpoint && s->stage.sink && !stage_written(&s->stage, &(err){0}))
         out_outlast(s->stage.sink);
     log_close(&s->log, e);
     stage_close(&s->stage, t, e);
@@ -486,10 +486,12 @@ static int read_input(session *s, const tool *t, struct options *o, err *e)
     return stage_open_output(&s->stage, t, e) || stage_read(&s->stage, &s->m, e) ? -1 : 0;
 }
 
-/* The body: all that comes before frames. */
+/* The body: all that comes before frames, in a run that does not keep up with a clock while the solver is made. */
 static int write_model(session *s, tool *t, const struct options *o, err *e)
 {
-    return say_provenance(t, s, o, e) || stage_write(&s->stage, &s->m, e) ? -1 : 0;
+    if (say_provenance(t, s, o, e))
+        return -1;
+    return s->live ? stage_write(&s->stage, &s->m, e) : stage_write_beside(&s->stage, &s->m, e);
 }
 
 /* Of a session whose model has come, to the end of its run. */
@@ -506,7 +508,7 @@ static void end_session(session *s, tool *t, err *e)
     if (!t->done)
         end_output(s, t, e);
     end_checkpoints(s, e);
-    executor_ahead_wait(&s->ahead);
+    executor_ahead_end(&s->ahead);
     live_destroy(s->live);
     pool_destroy(s->threads);
     results_destroy(s->results);

@@ -61,7 +61,7 @@ int tled_frame_choose(session *s, const struct options *o, err *e)
  * not known. */
 static int put_frame(session *s, const frame *f, const double *displacement, err *e)
 {
-    if (model_write_frame(s->stage.writer, f, e) || out_failed(s->stage.sink, e))
+    if (stage_written(&s->stage, e) || model_write_frame(s->stage.writer, f, e) || out_failed(s->stage.sink, e))
         return -1;
     if (displacement)
         folds_add(&s->folds, f->time, displacement);

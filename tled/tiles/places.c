@@ -10,31 +10,76 @@
 
 enum { CHUNK = 4096 }; /* nodes, or elements */
 
+/* Parts that threads join side by side: each node leads to a lower one of its part, the lowest to itself. */
+typedef struct parts {
+    const tled_problem *p;
+    int32_t *part;
+} parts;
+
+static int32_t leads_to(const int32_t *part, int32_t n)
+{
+    return __atomic_load_n(&part[n], __ATOMIC_RELAXED);
+}
+
+/* Shortens the way as it goes; whoever does so meanwhile leads to no higher node either. */
 static int32_t root(int32_t *part, int32_t n)
 {
-    while (part[n] != n)
-        n = part[n] = part[part[n]];
+    for (int32_t to; (to = leads_to(part, n)) != n; n = to) {
+        const int32_t next = leads_to(part, to);
+        if (next != to)
+            __atomic_store_n(&part[n], next, __ATOMIC_RELAXED);
+    }
     return n;
+}
+
+/* The higher of two roots leads to the lower, unless another thread has led it elsewhere: then they are found anew. */
+static void join(int32_t *part, int32_t a, int32_t b)
+{
+    while ((a = root(part, a)) != (b = root(part, b))) {
+        int32_t high = a > b ? a : b;
+        const int32_t low = a > b ? b : a;
+        if (__atomic_compare_exchange_n(&part[high], &high, low, false, __ATOMIC_RELAXED, __ATOMIC_RELAXED))
+            return;
+    }
+}
+
+static void begin_work(void *context, int64_t chunk, int64_t from, int64_t to)
+{
+    const parts *w = context;
+    (void)chunk;
+    for (int64_t n = from; n < to; n++)
+        w->part[n] = (int32_t)n;
+}
+
+static void join_work(void *context, int64_t chunk, int64_t from, int64_t to)
+{
+    const parts *w = context;
+    (void)chunk;
+    for (int64_t i = from; i < to; i++) {
+        const int32_t *node = w->p->element_node + 8 * i;
+        const int32_t first = root(w->part, node[0]);
+        for (int k = 1; k < 8; k++)
+            if (leads_to(w->part, node[k]) != first)
+                join(w->part, first, node[k]);
+    }
+}
+
+static void end_work(void *context, int64_t chunk, int64_t from, int64_t to)
+{
+    const parts *w = context;
+    (void)chunk;
+    for (int64_t n = from; n < to; n++)
+        __atomic_store_n(&w->part[n], root(w->part, (int32_t)n), __ATOMIC_RELAXED);
 }
 
 /* The root of each part is its lowest node. */
 static void find_parts(const tled_problem *p, int32_t *part)
 {
-    for (int32_t n = 0; n < p->nodes; n++)
-        part[n] = n;
-    for (int64_t i = 0; i < p->elements; i++) {
-        const int32_t *node = p->element_node + 8 * i;
-        int32_t a = root(part, node[0]);
-        for (int k = 1; k < 8; k++) {
-            if (part[node[k]] == a)
-                continue;
-            const int32_t b = root(part, node[k]), low = a < b ? a : b;
-            part[a > b ? a : b] = low;
-            a = low;
-        }
-    }
-    for (int32_t n = 0; n < p->nodes; n++)
-        part[n] = root(part, n);
+    parts w = {.p = p};
+    w.part = part;
+    pool_run(p->threads, p->nodes, CHUNK, begin_work, &w);
+    pool_run(p->threads, p->elements, CHUNK, join_work, &w);
+    pool_run(p->threads, p->nodes, CHUNK, end_work, &w);
 }
 
 typedef struct finder {

@@ -59,3 +59,60 @@ int64_t tiles_part(tiles *t, const uint8_t *late, err *e)
     free(turn);
     return count;
 }
+
+enum { NODES = 4096 };
+
+static int by_node(const void *a, const void *b)
+{
+    const int32_t x = ((const tile_extra *)a)->node, y = ((const tile_extra *)b)->node;
+    return (x > y) - (x < y);
+}
+
+typedef struct reordering {
+    tiles *t;
+    const int32_t *order; /* of the model's nodes */
+    int32_t *node;        /* as the tiles', in the new order */
+    uint32_t *info;
+} reordering;
+
+static void reorder_work(void *context, int64_t chunk, int64_t from, int64_t to)
+{
+    const reordering *r = context;
+    tiles *t = r->t;
+    (void)chunk;
+    for (int64_t k = from; k < to; k++) {
+        const int32_t at = t->order[k] = r->order[t->node[k]];
+        r->node[at] = t->node[k];
+        r->info[at] = t->node_info[k];
+    }
+}
+
+static void reorder_halos_work(void *context, int64_t chunk, int64_t from, int64_t to)
+{
+    tiles *t = context;
+    (void)chunk;
+    for (int64_t i = from; i < to; i++)
+        t->halo_node[i] = t->order[t->halo_node[i]];
+}
+
+int tiles_reorder(tiles *t, const int32_t *order, pool *threads, err *e)
+{
+    int32_t *node = mem_array(t->nodes, sizeof *node, "the tiles", e);
+    uint32_t *info = mem_array(t->nodes, sizeof *info, "the tiles", e);
+    t->order = mem_array(t->nodes, sizeof *t->order, "the tiles", e);
+    if (!node || !info || !t->order) {
+        free(node);
+        free(info);
+        return -1;
+    }
+    pool_run(threads, t->nodes, NODES, reorder_work, &(reordering){t, order, node, info});
+    pool_run(threads, t->halos, NODES, reorder_halos_work, t);
+    for (int64_t i = 0; i < t->extras; i++)
+        t->extra[i].node = t->order[t->extra[i].node];
+    qsort(t->extra, (size_t)t->extras, sizeof *t->extra, by_node);
+    free(t->node);
+    free(t->node_info);
+    t->node = node;
+    t->node_info = info;
+    return 0;
+}

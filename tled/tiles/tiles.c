@@ -559,36 +559,3 @@ out:
     tile_split_free(&c.split);
     return result;
 }
-
-static int by_node(const void *a, const void *b)
-{
-    const int32_t x = ((const tile_extra *)a)->node, y = ((const tile_extra *)b)->node;
-    return (x > y) - (x < y);
-}
-
-int tiles_reorder(tiles *t, const int32_t *order, err *e)
-{
-    int32_t *node = mem_array(t->nodes, sizeof *node, "the tiles", e);
-    uint32_t *info = mem_array(t->nodes, sizeof *info, "the tiles", e);
-    t->order = mem_array(t->nodes, sizeof *t->order, "the tiles", e);
-    if (!node || !info || !t->order) {
-        free(node);
-        free(info);
-        return -1;
-    }
-    for (int64_t k = 0; k < t->nodes; k++) {
-        const int32_t at = t->order[k] = order[t->node[k]];
-        node[at] = t->node[k];
-        info[at] = t->node_info[k];
-    }
-    for (int64_t i = 0; i < t->halos; i++)
-        t->halo_node[i] = t->order[t->halo_node[i]];
-    for (int64_t i = 0; i < t->extras; i++)
-        t->extra[i].node = t->order[t->extra[i].node];
-    qsort(t->extra, (size_t)t->extras, sizeof *t->extra, by_node);
-    free(t->node);
-    free(t->node_info);
-    t->node = node;
-    t->node_info = info;
-    return 0;
-}

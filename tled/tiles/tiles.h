@@ -92,7 +92,4 @@ void tiles_free(tiles *t);
 /* Takes over what tled_problem_reload changed: what the script does to nodes. -1 with e filled: no memory. */
 int tiles_reload(tiles *t, const tled_problem *p, err *e);
 
-/* Puts the nodes of new tiles in another order: where each of the model's is to stand. -1 with e filled: no memory. */
-int tiles_reorder(tiles *t, const int32_t *order, err *e);
-
 #endif
