@@ -434,7 +434,7 @@ static int find_shape(const muscle_surfaces *surfaces, int32_t index, muscle_sha
     return rc;
 }
 
-/* Chooses the muscle's rule, and lays its fibres by it. */
+/* Chooses the muscle's rule, and lays its fibres by it, unless they are left. */
 static int follow_rule(fibre_case *c, muscle *of, const muscle_surfaces *surfaces, err *e)
 {
     muscle_shape *shape = NULL;
@@ -449,29 +449,86 @@ static int follow_rule(fibre_case *c, muscle *of, const muscle_surfaces *surface
     of->rule = of->asked >= 0 ? (muscle_fibre)of->asked : fibre_rule_for(c);
     if (!rc && fibre_rules[of->rule].fill)
         rc = fibre_rules[of->rule].fill(c, e);
-    if (!rc && fibre_rules[of->rule].fill && of->rule != MUSCLE_FIELD && !of->is_ring)
-        turn_fibres(c->b, of);
     muscle_shape_free(shape);
     return rc;
+}
+
+static void finish_fibres(const body *b, muscle *of)
+{
+    if (fibre_rules[of->rule].fill && of->rule != MUSCLE_FIELD && !of->is_ring)
+        turn_fibres(b, of);
+    set_fibres(b, of);
+}
+
+/* Muscles on their way; what is one muscle's, is one thread's. */
+typedef struct followed {
+    fibre_case common;
+    muscles *list;
+    const muscle_surfaces *surfaces;
+    bool *left;  /* muscles */
+    err *failed; /* muscles */
+} followed;
+
+static void follow_some(void *context, int64_t chunk, int64_t from, int64_t to)
+{
+    const followed *w = context;
+    (void)chunk;
+    for (int64_t i = from; i < to; i++) {
+        fibre_case c = w->common;
+        c.index = (int32_t)i;
+        const int failed = follow_rule(&c, &w->list->of[i], w->surfaces, &w->failed[i]);
+        w->left[i] = c.is_left;
+        if (!failed && !c.is_left)
+            finish_fibres(c.b, &w->list->of[i]);
+    }
+}
+
+/* With all threads, those that are too much for one: they have neither shape nor ring. */
+static int follow_left(const followed *w, pool *threads, err *e)
+{
+    for (int64_t i = 0; i < w->list->count; i++) {
+        muscle *of = &w->list->of[i];
+        fibre_case c = w->common;
+        c.index = (int32_t)i;
+        c.of = of;
+        c.threads = threads;
+        if (!w->left[i])
+            continue;
+        if (fibre_rules[of->rule].fill(&c, e))
+            return -1;
+        finish_fibres(c.b, of);
+    }
+    return 0;
+}
+
+/* Each muscle on a thread of its own: of most the loops are too short to be shared. */
+static int follow_all(followed *w, pool *threads, err *e)
+{
+    int rc = 0;
+    w->left = mem_array(w->list->count, sizeof *w->left, "muscles", e);
+    w->failed = w->left ? mem_array(w->list->count, sizeof *w->failed, "muscles", e) : NULL;
+    if (!w->failed)
+        return -1;
+    pool_run(threads, w->list->count, 1, follow_some, w);
+    for (int64_t i = 0; !rc && i < w->list->count; i++)
+        rc = err_join(e, &w->failed[i]);
+    return rc ? -1 : follow_left(w, threads, e);
 }
 
 static int follow_rules(const model *m, const body *b, muscles *list, pool *threads, err *e)
 {
     muscle_surfaces surfaces = {0};
-    fibre_case c = {.m = m, .b = b, .threads = threads};
+    fibre_voxels voxels = {PTHREAD_MUTEX_INITIALIZER, NULL};
+    followed w = {.common = {.m = m, .b = b, .voxels = &voxels}, .list = list, .surfaces = &surfaces};
     const char **name = mem_array(list->count, sizeof *name, "muscles", e);
     int rc = name ? 0 : -1;
     for (int64_t i = 0; name && i < list->count; i++)
         name[i] = list->of[i].name;
-    rc = rc || muscle_surfaces_find(&surfaces, m, name, list->count, e) ? -1 : 0;
-    for (int64_t i = 0; !rc && i < list->count; i++) {
-        c.index = (int32_t)i;
-        rc = follow_rule(&c, &list->of[i], &surfaces, e);
-        if (!rc)
-            set_fibres(b, &list->of[i]);
-    }
-    field_free(c.voxels);
+    rc = rc || muscle_surfaces_find(&surfaces, m, name, list->count, e) || follow_all(&w, threads, e) ? -1 : 0;
+    field_free(voxels.of);
     muscle_surfaces_free(&surfaces);
+    free(w.left);
+    free(w.failed);
     free(name);
     return rc;
 }
