@@ -205,7 +205,7 @@ static int work(const struct options *o, const tool *t, model *m, notes *warning
     film_drop(m, warnings);
     threads = pool_create(count, e);
     if (!threads || collect(o, m, &file, &r, warnings, e) || collect_loose(o, m, &loose_file, &loose, warnings, e) ||
-        anchor_nodes(m, &r, o->strictness, warnings, e) || part_make(m, &o->part, &loose, warnings, e) ||
+        anchor_nodes(m, &r, o->strictness, threads, warnings, e) || part_make(m, &o->part, &loose, warnings, e) ||
         muscle_make(m, &o->fibre, threads, &list, warnings, e) ||
         (o->lines && fibre_lines_apply(m, o->lines, &o->lines_in, threads, e)) ||
         make_fields(o, t, m, &r, &loose, threads, warnings, e) || (o->surface && hold_surface(t, m, &r, warnings, e)))

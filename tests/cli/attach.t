@@ -372,6 +372,12 @@ is "$(awk '/^  muscle_/ && $3 == "none" && $4 == 0 && /!$/' "$T/stderr" | wc -l 
 check "along fields" attach --report --fibre field -o "$T/field" <"$T/face"
 is "$(grep -c -e warning -e '!$' "$T/stderr") $(awk '/^  muscle_/ { print $3 }' "$T/stderr" | LC_ALL=C sort | uniq -c | tr -s ' \n' ' ')" \
     "0  32 field 2 field, " "none, for all contract"
+for threads in 1 3 16; do
+    attach --rigid 'skull*,muscle_b*,muscle_z*,skin' --threads $threads --report -o "$T/rigid$threads" <"$T/face" 2>"$T/report$threads"
+done
+check "many rigid surfaces: the same nodes by three threads" cmp "$T/rigid1" "$T/rigid3"
+check "and by sixteen" cmp "$T/rigid1" "$T/rigid16"
+check "and the same counts of what each holds" cmp "$T/report1" "$T/report16"
 check "by default" attach --report -o "$T/all" <"$T/face"
 is "$(grep -c -e warning -e '!$' "$T/stderr") $(awk '/^  muscle_/ { print $3 }' "$T/stderr" | LC_ALL=C sort | uniq -c | tr -s ' \n' ' ')" \
     "0  8 round 26 shape " "all 34 have fibres, the quarters of the sphincter as such"
