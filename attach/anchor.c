@@ -313,7 +313,7 @@ static int add_arrays(model *m, search *s, const rigid *r, notes *warnings, err 
 }
 
 /* The lattice and its elements; the lengths within which a primitive matters and within which two are equal. */
-static int find_voxels(const model *m, search *s, err *e)
+static int find_voxels(const model *m, search *s, pool *threads, err *e)
 {
     const model_array *node = model_need(m, "element.node", e);
     if (!node || lattice_of(m, &s->grid, e))
@@ -326,14 +326,14 @@ static int find_voxels(const model *m, search *s, err *e)
     const double *h = s->grid.spacing;
     s->reach = sqrt(h[0] * h[0] + h[1] * h[1] + h[2] * h[2]) * (1 + 1e-6);
     s->tie = tolerance * fmin(h[0], fmin(h[1], h[2]));
-    return lattice_map_build(&s->map, m, e);
+    return lattice_map_build(&s->map, m, threads, e);
 }
 
 int anchor_nodes(model *m, rigid *r, double strictness, pool *threads, notes *warnings, err *e)
 {
     search s = {.strictness = strictness};
     int rc = -1;
-    if (find_voxels(m, &s, e) || add_arrays(m, &s, r, warnings, e) || try_primitives(&s, r, threads, e))
+    if (find_voxels(m, &s, threads, e) || add_arrays(m, &s, r, warnings, e) || try_primitives(&s, r, threads, e))
         goto out;
     rc = 0;
 out:

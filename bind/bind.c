@@ -95,15 +95,14 @@ static int target_open(target *to, const model *m, const struct options *o, int 
     to->corners = model_find(m, "element.node")->columns;
     to->by_lattice = to->corners == 8 && (model_meta_of(m, "lattice.spacing") || model_find(m, "element.lattice"));
     to->blended = to->by_lattice && o->motion != MOTION_ELEMENT;
-    if (to->by_lattice ? nearest_build(&to->voxels, m, e) : tetra_build(&to->tetrahedra, m, e))
+    to->threads = pool_create(threads, e);
+    if (!to->threads ||
+        (to->by_lattice ? nearest_build(&to->voxels, m, to->threads, e) : tetra_build(&to->tetrahedra, m, e)))
         return -1;
     if (to->tetrahedra.flat)
         notes_add(warnings, "%lld of the %s have no volume, and nothing is bound to them",
                   (long long)to->tetrahedra.flat, to->corners == 4 ? "tetrahedra" : "hexahedra");
-    if (to->by_lattice && side_create(&to->sides, m, &to->voxels, threads, e))
-        return -1;
-    to->threads = pool_create(threads, e);
-    return to->threads ? 0 : -1;
+    return to->by_lattice && side_create(&to->sides, m, &to->voxels, threads, e) ? -1 : 0;
 }
 
 static void target_close(target *to)
