@@ -359,6 +359,19 @@ static int bind_carried(const tool *t, target *to, model *m, const struct option
     return 0;
 }
 
+/* What bind_surface makes anew. */
+static bool is_made(const model_array *a)
+{
+    const char *of = strchr(a->name, '/');
+    return of && (!strcmp(of, "/vertex.element") || !strcmp(of, "/vertex.weight") || !strcmp(of, "/vertex.blended"));
+}
+
+/* Where no axis and no surface is added, all that came is written while surfaces are bound. */
+static int write_ahead(const tool *t, stage *s, model *m, const struct options *o, int threads, err *e)
+{
+    return threads < 2 || t->operands || o->self_contact.count ? 0 : stage_write_ahead(s, m, is_made, e);
+}
+
 /* Once the model carries the surfaces. */
 static int touch_itself(const tool *t, const target *to, model *m, const struct options *o, int threads,
                         notes *warnings, err *e)
@@ -416,7 +429,8 @@ static int run_tool(int argc, char **argv)
     if (stage_open_output(&s, &t, &e) || check_options(&o, t.operands, argv + 1, &e) ||
         (threads = tool_threads(&t, &e)) < 0)
         goto out;
-    if (stage_read(&s, &m, &e) || check_model(&m, &e) || target_open(&to, &m, &o, threads, &warnings, &e))
+    if (stage_read(&s, &m, &e) || check_model(&m, &e) || write_ahead(&t, &s, &m, &o, threads, &e) ||
+        target_open(&to, &m, &o, threads, &warnings, &e))
         goto out;
     if (t.operands ? bind_files(&t, &to, &m, argv + 1, &o, &warnings, &e)
                    : bind_carried(&t, &to, &m, &o, &warnings, &e))

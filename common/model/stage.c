@@ -1,9 +1,11 @@
 #include "model/stage.h"
 
 #include "base/mem.h"
+#include "base/thread.h"
 #include "model/model_share.h"
 
 #include <inttypes.h>
+#include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -38,11 +40,71 @@ int stage_read(stage *s, model *m, err *e)
     return s->reader ? model_read(s->reader, m, e) : -1;
 }
 
+static int add_provenance(stage *s, model *m, err *e)
+{
+    if (s->has_provenance)
+        return 0;
+    s->has_provenance = true;
+    return model_prov_add(m, s->t->table->name, SINEW_VERSION, s->t->provenance ? s->t->provenance : "", e);
+}
+
+/* What is written ahead. The model is shared: it is as it was when this began. */
+struct stage_ahead {
+    pthread_t thread;
+    model_writer *w;
+    model m;
+    int arrays;
+    err failed;
+};
+
+static void *write_some(void *context)
+{
+    stage_ahead *a = context;
+    model_write_ahead(a->w, &a->m, a->arrays, &a->failed);
+    return NULL;
+}
+
+static void free_ahead(stage *s)
+{
+    model_free(&s->ahead->m);
+    free(s->ahead);
+    s->ahead = NULL;
+}
+
+/* Waits for what is written ahead. */
+static int end_ahead(stage *s, err *e)
+{
+    if (!s->ahead)
+        return 0;
+    pthread_join(s->ahead->thread, NULL);
+    const int failed = err_join(e, &s->ahead->failed);
+    free_ahead(s);
+    return failed;
+}
+
+int stage_write_ahead(stage *s, model *m, bool changes(const model_array *a), err *e)
+{
+    if (add_provenance(s, m, e))
+        return -1;
+    stage_ahead *a = s->ahead = mem_array(1, sizeof *a, "writing a model", e);
+    if (!a)
+        return -1;
+    a->w = s->writer;
+    while (a->arrays < m->arrays.count && !changes(&m->arrays.v[a->arrays]))
+        a->arrays++;
+    if (!model_share(&a->m, m, e)) {
+        const int code = thread_start_quiet(&a->thread, write_some, a);
+        if (!code)
+            return 0;
+        err_system(e, NULL, code, "cannot start a thread");
+    }
+    free_ahead(s);
+    return -1;
+}
+
 int stage_write(stage *s, model *m, err *e)
 {
-    if (model_prov_add(m, s->t->table->name, SINEW_VERSION, s->t->provenance ? s->t->provenance : "", e))
-        return -1;
-    return model_write(s->writer, m, e);
+    return end_ahead(s, e) || add_provenance(s, m, e) ? -1 : model_write(s->writer, m, e);
 }
 
 /* Those that came before, and were kept for several stages. */
@@ -154,6 +216,7 @@ static void close_failed(stage *s, const tool *t, const err *e)
 
 void stage_close(stage *s, const tool *t, err *e)
 {
+    end_ahead(s, e);
     /* A model counts only once its end was seen: what is left in the pipe is read, and may yet say `fail`. */
     if (!e->status && s->reader)
         pass_frames(s, NULL, NULL, NULL, e);

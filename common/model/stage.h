@@ -8,6 +8,8 @@
 #include "cli/tool.h"
 #include "model/stream.h"
 
+typedef struct stage_ahead stage_ahead;
+
 typedef struct stage {
     const tool *t;
     in *source;
@@ -15,7 +17,9 @@ typedef struct stage {
     bool lines_follow; /* the model on stdin, for the caller to take (live/lines.h); set before stage_read */
     out *sink;
     model_writer *writer;
-    const frame *kept; /* in place of a reader: the frames that came, borrowed */
+    stage_ahead *ahead;  /* a thread that writes, see stage_write_ahead */
+    bool has_provenance; /* the model that is written */
+    const frame *kept;   /* in place of a reader: the frames that came, borrowed */
     int64_t kept_count;
 } stage;
 
@@ -28,6 +32,11 @@ int stage_read(stage *s, model *m, err *e);
 
 /* Appends the tool's provenance to m and writes it. */
 int stage_write(stage *s, model *m, err *e);
+
+/* Appends the provenance, and begins to write on a thread of its own: all but the arrays, then the first of these, up
+ * to the first that `changes`. So the next tool reads while this one computes. Until stage_write, which writes the
+ * rest, m may only get more arrays, and those that do not change stay as they are. */
+int stage_write_ahead(stage *s, model *m, bool changes(const model_array *a), err *e);
 
 /* Copies the frames that are left in to out. */
 int stage_copy_frames(stage *s, const model *m, err *e);

@@ -33,6 +33,19 @@ sinew bind --text --threads 1 "$T/dots.obj" <"$T/model" >"$T/1"
 sinew bind --text --threads 5 "$T/dots.obj" <"$T/model" >"$T/2"
 check "the same bytes for any number of threads" cmp "$T/1" "$T/2"
 
+# With several threads a model is written while its surfaces are bound.
+sinew bind -q --name two "$T/dots.obj" <"$T/bound" >"$T/two"
+for from in "$T/bound" "$T/two"; do
+    for form in --text -z ''; do
+        # shellcheck disable=SC2086 # no option is none
+        for threads in 1 2 5; do
+            sinew bind -q $form --threads $threads <"$from" >"$T/by$threads"
+        done
+        check "carried surfaces $form: the same bytes for any number of threads" cmp "$T/by1" "$T/by2"
+        check "and for five" cmp "$T/by1" "$T/by5"
+    done
+done
+
 # How vertices will move.
 is "$(array "$T/bound" dots/vertex.blended)" "1 1 1 1 1 1 " "vertices move blended"
 check "--motion element" sinew bind -q --text --motion element -o "$T/x" <"$T/bound"
