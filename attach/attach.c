@@ -208,12 +208,14 @@ static bool is_fibres(const model_array *a)
     return !strcmp(a->name, "element.fibre") || !strcmp(a->name, "element.mixfibre");
 }
 
-/* The muscles; where axes stay from then on, all but the fibres is written while these are laid. */
+/* The muscles; of a large model, where axes stay from then on, all but the fibres is written while these are laid. */
 static int make_muscles(const struct options *o, stage *s, model *m, muscles *list, pool *threads, notes *warnings,
                         err *e)
 {
-    if (muscle_find(m, &o->fibre, list, warnings, e) ||
-        (pool_threads(threads) > 1 && !changes_axes(o, m) && stage_write_ahead(s, m, is_fibres, e)))
+    if (muscle_find(m, &o->fibre, list, warnings, e))
+        return -1;
+    const bool ahead = pool_threads(threads) > 1 && !changes_axes(o, m) && stage_is_large(m);
+    if (ahead && stage_write_ahead(s, m, is_fibres, e))
         return -1;
     return muscle_fibres(m, &o->fibre, threads, list, warnings, e) ||
                    (o->lines && fibre_lines_apply(m, o->lines, &o->lines_in, threads, e))

@@ -369,7 +369,8 @@ static bool is_made(const model_array *a)
 /* Where no axis and no surface is added, all that came is written while surfaces are bound. */
 static int write_ahead(const tool *t, stage *s, model *m, const struct options *o, int threads, err *e)
 {
-    return threads < 2 || t->operands || o->self_contact.count ? 0 : stage_write_ahead(s, m, is_made, e);
+    const bool adds = t->operands || o->self_contact.count;
+    return adds || threads < 2 || !stage_is_large(m) ? 0 : stage_write_ahead(s, m, is_made, e);
 }
 
 /* Once the model carries the surfaces. */

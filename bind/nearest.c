@@ -17,7 +17,8 @@ static double longest(const lattice *l)
     return fmax(fmax(l->spacing[0], l->spacing[1]), l->spacing[2]);
 }
 
-enum { CHUNK = 4096 }; /* elements */
+/* What takes longer than to wake a thread. */
+enum { CHUNK = 1 << 14, BLOCKS = 1 << 16 }; /* elements, blocks */
 
 typedef struct boxes {
     const nearest *n;
@@ -102,8 +103,7 @@ static int add_level(nearest *n, pool *threads, err *e)
     l->occupied = mem_array(blocks, 1, "the lattice's blocks", e);
     if (!l->occupied)
         return -1;
-    /* Of few blocks, all at once. */
-    pool_run(threads, l->size[2], blocks > CHUNK ? 1 : l->size[2], gather_some, n);
+    pool_run(threads, l->size[2], blocks > BLOCKS ? 1 : l->size[2], gather_some, n);
     n->levels++;
     return 0;
 }

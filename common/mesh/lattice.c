@@ -36,7 +36,8 @@ int lattice_save(const lattice *l, model *m, err *e)
  * far apart may not ask for any memory. */
 enum { CELLS_FREE = 1 << 22, CELLS_EACH = 1000 };
 
-enum { CHUNK = 1 << 14 }; /* elements, cells */
+/* What takes longer than to wake a thread. */
+enum { CHUNK = 1 << 15, CELLS_CHUNK = 1 << 18 }; /* elements, cells */
 
 typedef struct box {
     int32_t low[3], high[3];
@@ -143,11 +144,11 @@ static int enter_in_turn(filling *f, err *e)
 /* All at once; only where cells turn out to have several elements, their order counts. */
 static int fill(filling *f, int64_t cells, pool *threads, err *e)
 {
-    pool_run(threads, cells, CHUNK, clear_some, f);
+    pool_run(threads, cells, CELLS_CHUNK, clear_some, f);
     pool_run(threads, f->elements, CHUNK, enter_some, f);
     if (!f->is_shared)
         return 0;
-    pool_run(threads, cells, CHUNK, clear_some, f);
+    pool_run(threads, cells, CELLS_CHUNK, clear_some, f);
     return enter_in_turn(f, e);
 }
 

@@ -82,6 +82,15 @@ static int end_ahead(stage *s, err *e)
     return failed;
 }
 
+bool stage_is_large(const model *m)
+{
+    enum { LARGE = 1 << 22 }; /* bytes: fewer are written in a few milliseconds */
+    int64_t bytes = 0;
+    for (int i = 0; i < m->arrays.count; i++)
+        bytes += m->arrays.v[i].rows * m->arrays.v[i].columns * (int64_t)model_type_size(m->arrays.v[i].type);
+    return bytes >= LARGE;
+}
+
 int stage_write_ahead(stage *s, model *m, bool changes(const model_array *a), err *e)
 {
     if (add_provenance(s, m, e))

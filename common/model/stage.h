@@ -33,6 +33,9 @@ int stage_read(stage *s, model *m, err *e);
 /* Appends the tool's provenance to m and writes it. */
 int stage_write(stage *s, model *m, err *e);
 
+/* Whether to write a model takes long enough for a thread of its own. */
+bool stage_is_large(const model *m);
+
 /* Appends the provenance, and begins to write on a thread of its own: all but the arrays, then the first of these, up
  * to the first that `changes`. So the next tool reads while this one computes. Until stage_write, which writes the
  * rest, m may only get more arrays, and those that do not change stay as they are. */
