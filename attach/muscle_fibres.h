@@ -1,5 +1,5 @@
-/* The fibres of muscles, by the rule that each has (fibre_rule.h), and what of a muscle will not contract. Keeps nothing.
- */
+/* The fibres of muscles, by the rule that each has (fibre_rule.h), and what of a muscle will not contract. Keeps
+ * nothing. */
 #ifndef SINEW_MUSCLE_FIBRES_H
 #define SINEW_MUSCLE_FIBRES_H
 

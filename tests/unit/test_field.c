@@ -1,8 +1,8 @@
 /* Fibres by a potential: in a straight bar exactly along it; in a bent tube made from equations, its own axis; with
  * both ends, one or none attached, whatever the number of threads.
  */
-// needs: attach/muscle.c attach/muscle_fibres.c attach/attachment.c attach/fibre_rule.c attach/fibre_field.c attach/shape/laplace.c
-// needs: attach/shape/ring.c attach/muscle_shape.c attach/muscle_surface.c
+// needs: attach/muscle.c attach/muscle_fibres.c attach/attachment.c attach/fibre_rule.c attach/fibre_field.c
+// needs: attach/shape/laplace.c attach/shape/ring.c attach/muscle_shape.c attach/muscle_surface.c
 #include "attach/muscle.h"
 #include "attach/shape/laplace.h"
 
