@@ -37,8 +37,8 @@ typedef struct fibre_rule {
     const char *name;
     const char *what; /* one line, for the manual */
     bool (*applies)(const fibre_case *c);
-    /* Fills the fibres of the muscle's elements; those that stay 0 0 0 get its axis. NULL: muscle_fibres.c sets them one
-     * by one. -1 with e filled. */
+    /* Fills the fibres of the muscle's elements; those that stay 0 0 0 get its axis. NULL: muscle_fibres.c sets them
+     * one by one. -1 with e filled. */
     int (*fill)(fibre_case *c, err *e);
 } fibre_rule;
 
