@@ -4,6 +4,7 @@
 #include "base/thread.h"
 
 #include <pthread.h>
+#include <signal.h>
 #include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
@@ -152,14 +153,19 @@ pool *pool_create(int threads, err *e)
     pthread_cond_init(&p->finished, NULL);
     p->worker = mem_array(p->threads, sizeof *p->worker, "threads", e);
     p->share = mem_array(p->threads, sizeof *p->share, "threads", e);
+    /* Signals are the main thread's: a handler then never runs beside what it looks at. */
+    sigset_t all, before;
+    sigfillset(&all);
+    pthread_sigmask(SIG_BLOCK, &all, &before);
     int failed = p->worker && p->share ? 0 : -1;
     while (!failed && p->started < p->threads - 1) {
-        int code = thread_start_quiet(&p->worker[p->started], worker_main, p);
+        int code = thread_start(&p->worker[p->started], worker_main, p);
         if (code)
             failed = err_system(e, NULL, code, "cannot start a thread");
         else
             p->started++;
     }
+    pthread_sigmask(SIG_SETMASK, &before, NULL);
     if (failed) {
         pool_destroy(p);
         return NULL;
