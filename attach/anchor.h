@@ -5,6 +5,7 @@
 #ifndef SINEW_ANCHOR_H
 #define SINEW_ANCHOR_H
 
+#include "base/pool.h"
 #include "model/model.h"
 #include "rigid.h"
 
@@ -19,7 +20,9 @@
  *
  * With element.fraction, voxels may be elements whose centres lie in the bone. Where the closest point is in a voxel of
  * which less than half is enclosed, both ends of the line count: the nodes on the tissue's side, which are the surface
- * to the nearest layer of nodes, and those behind, which nothing else would hold. */
-int anchor_nodes(model *m, rigid *r, double strictness, notes *warnings, err *e);
+ * to the nearest layer of nodes, and those behind, which nothing else would hold.
+ *
+ * threads: NULL for the caller alone. */
+int anchor_nodes(model *m, rigid *r, double strictness, pool *threads, notes *warnings, err *e);
 
 #endif

@@ -10,7 +10,7 @@
 #include "held_report.h"
 #include "model/finite.h"
 #include "model/stage.h"
-#include "muscle.h"
+#include "muscle_fibres.h"
 #include "part.h"
 #include "slide.h"
 #include "surface/surface.h"
@@ -193,7 +193,37 @@ static int make_fields(const struct options *o, const tool *t, model *m, const r
     return failed ? -1 : 0;
 }
 
-static int work(const struct options *o, const tool *t, model *m, notes *warnings, err *e)
+/* Whether axes come or go once the muscles are there. */
+static bool changes_axes(const struct options *o, const model *m)
+{
+    static const char *const dropped[] = {"field", "distance", "slide"};
+    bool is_dropped = false;
+    for (size_t i = 0; i < sizeof dropped / sizeof *dropped; i++)
+        is_dropped = is_dropped || model_count(m, dropped[i]) >= 0;
+    return is_dropped || o->surface || o->slide.count || o->slide_off.count || o->contact.count;
+}
+
+static bool is_fibres(const model_array *a)
+{
+    return !strcmp(a->name, "element.fibre") || !strcmp(a->name, "element.mixfibre");
+}
+
+/* The muscles; of a large model, where axes stay from then on, all but the fibres is written while these are laid. */
+static int make_muscles(const struct options *o, stage *s, model *m, muscles *list, pool *threads, notes *warnings,
+                        err *e)
+{
+    if (muscle_find(m, &o->fibre, list, warnings, e))
+        return -1;
+    const bool ahead = pool_threads(threads) > 1 && !changes_axes(o, m) && stage_is_large(m);
+    if (ahead && stage_write_ahead(s, m, is_fibres, e))
+        return -1;
+    return muscle_fibres(m, &o->fibre, threads, list, warnings, e) ||
+                   (o->lines && fibre_lines_apply(m, o->lines, &o->lines_in, threads, e))
+               ? -1
+               : 0;
+}
+
+static int work(const struct options *o, const tool *t, stage *s, model *m, notes *warnings, err *e)
 {
     rigid r = {0}, loose = {0};
     model file = {0}, loose_file = {0};
@@ -205,10 +235,9 @@ static int work(const struct options *o, const tool *t, model *m, notes *warning
     film_drop(m, warnings);
     threads = pool_create(count, e);
     if (!threads || collect(o, m, &file, &r, warnings, e) || collect_loose(o, m, &loose_file, &loose, warnings, e) ||
-        anchor_nodes(m, &r, o->strictness, warnings, e) || part_make(m, &o->part, &loose, warnings, e) ||
-        muscle_make(m, &o->fibre, threads, &list, warnings, e) ||
-        (o->lines && fibre_lines_apply(m, o->lines, &o->lines_in, threads, e)) ||
-        make_fields(o, t, m, &r, &loose, threads, warnings, e) || (o->surface && hold_surface(t, m, &r, warnings, e)))
+        anchor_nodes(m, &r, o->strictness, threads, warnings, e) || part_make(m, &o->part, &loose, warnings, e) ||
+        make_muscles(o, s, m, &list, threads, warnings, e) || make_fields(o, t, m, &r, &loose, threads, warnings, e) ||
+        (o->surface && hold_surface(t, m, &r, warnings, e)))
         goto out;
     check_held(&r, warnings);
     say_rules(t, &list);
@@ -251,7 +280,7 @@ static int run_tool(int argc, char **argv)
     if (tool_begin(&t, &table, argc, argv, &o, &e) || t.done || check_options(&o, &e))
         goto out;
     if (!stage_open_output(&s, &t, &e) && !stage_read(&s, &m, &e) && !stage_drop_frames(&s, &m, &warnings, &e) &&
-        !work(&o, &t, &m, &warnings, &e))
+        !work(&o, &t, &s, &m, &warnings, &e))
         stage_write(&s, &m, &e);
 out:
     tool_warn(&t, &warnings);

@@ -13,7 +13,6 @@ static const double least_conduction = 1e-3; /* of an element of which hardly an
 
 struct field {
     const body *b;
-    pool *threads;
     double spacing[3], voxel; /* its longest side */
     int32_t *local;           /* nodes: number in the muscle at hand, -1 = none */
 };
@@ -33,8 +32,7 @@ typedef struct piece {
     double out[3];                   /* unit: the way out of it; before: the piece's middle */
 } piece;
 
-/* One muscle. */
-typedef struct muscle_field {
+struct muscle_field {
     const field *f;
     int32_t volume;
     const double *axis;     /* along which a piece without an attachment begins; NULL: where it is furthest out */
@@ -42,6 +40,7 @@ typedef struct muscle_field {
     int64_t elements, nodes, capacity;
     int32_t *corner; /* elements x 8: local nodes */
     int32_t *node;   /* nodes: in the body */
+    int32_t *part;   /* nodes: the attachment, -1 = none */
     int32_t *root;   /* nodes: the first of the piece */
     float *share;    /* elements; NULL: all are whole */
     bool *held;
@@ -52,14 +51,14 @@ typedef struct muscle_field {
     double *mean;      /* nodes x 3 */
     piece *of;         /* nodes: at roots */
     laplace *potential;
-} muscle_field;
+};
 
-field *field_create(const body *b, pool *threads, const double *spacing, err *e)
+field *field_create(const body *b, const double *spacing, err *e)
 {
     field *f = mem_array(1, sizeof *f, "fibres", e);
     if (!f)
         return NULL;
-    *f = (field){.b = b, .threads = threads};
+    *f = (field){.b = b};
     for (int a = 0; a < 3; a++) {
         f->spacing[a] = spacing[a];
         f->voxel = fmax(f->voxel, spacing[a]);
@@ -115,14 +114,42 @@ static void find_pieces(muscle_field *m)
             body_share(m->f->b, m->element[i], m->volume) * m->f->spacing[0] * m->f->spacing[1] * m->f->spacing[2];
 }
 
-static int muscle_open(muscle_field *m, err *e)
+/* The attachments of the nodes; takes the marks off them. */
+static int take_parts(muscle_field *m, err *e)
+{
+    m->part = mem_array(m->nodes, sizeof *m->part, "fibres", e);
+    for (int64_t n = 0; n < m->nodes; n++) {
+        m->f->local[m->node[n]] = -1;
+        if (m->part)
+            m->part[n] = m->f->b->part[m->node[n]];
+    }
+    return m->part ? 0 : -1;
+}
+
+muscle_field *field_open(field *f, int32_t volume, err *e)
+{
+    const body *b = f->b;
+    muscle_field *m = mem_array(1, sizeof *m, "fibres", e);
+    if (!m)
+        return NULL;
+    *m = (muscle_field){.f = f,
+                        .volume = volume,
+                        .element = &b->element[b->start[volume]],
+                        .elements = b->start[volume + 1] - b->start[volume]};
+    m->corner = mem_array(8 * m->elements, sizeof *m->corner, "fibres", e);
+    const int failed = m->corner ? number_nodes(m, e) : -1;
+    if (!take_parts(m, e) && !failed)
+        return m;
+    field_close(m);
+    return NULL;
+}
+
+/* What the fibres are computed with. */
+static int make_room(muscle_field *m, pool *threads, err *e)
 {
     const body *b = m->f->b;
-    m->corner = mem_array(8 * m->elements, sizeof *m->corner, "fibres", e);
-    m->direction = m->corner ? mem_array(3 * m->elements, sizeof *m->direction, "fibres", e) : NULL;
-    if (!m->direction || number_nodes(m, e))
-        return -1;
-    m->root = mem_array(m->nodes, sizeof *m->root, "fibres", e);
+    m->direction = mem_array(3 * m->elements, sizeof *m->direction, "fibres", e);
+    m->root = m->direction ? mem_array(m->nodes, sizeof *m->root, "fibres", e) : NULL;
     m->held = m->root ? mem_array(m->nodes, sizeof *m->held, "fibres", e) : NULL;
     m->end = m->held ? mem_array(m->nodes, sizeof *m->end, "fibres", e) : NULL;
     m->u = m->end ? mem_array(m->nodes, sizeof *m->u, "fibres", e) : NULL;
@@ -138,17 +165,18 @@ static int muscle_open(muscle_field *m, err *e)
         return -1;
     for (int64_t i = 0; m->share && i < m->elements; i++)
         m->share[i] = (float)fmax(body_share(b, m->element[i], m->volume), least_conduction);
-    m->potential = laplace_create(m->f->threads, m->f->spacing, m->corner, m->elements, m->nodes, m->share, e);
+    m->potential = laplace_create(threads, m->f->spacing, m->corner, m->elements, m->nodes, m->share, e);
     return m->potential ? 0 : -1;
 }
 
-static void muscle_close(muscle_field *m)
+void field_close(muscle_field *m)
 {
-    for (int64_t n = 0; n < m->nodes; n++)
-        m->f->local[m->node[n]] = -1;
+    if (!m)
+        return;
     laplace_free(m->potential);
     free(m->corner);
     free(m->node);
+    free(m->part);
     free(m->root);
     free(m->share);
     free(m->held);
@@ -158,6 +186,7 @@ static void muscle_close(muscle_field *m)
     free(m->direction);
     free(m->mean);
     free(m->of);
+    free(m);
 }
 
 static piece *piece_of(const muscle_field *m, int64_t n)
@@ -167,7 +196,7 @@ static piece *piece_of(const muscle_field *m, int64_t n)
 
 static int32_t part_of(const muscle_field *m, int64_t n)
 {
-    return m->f->b->part[m->node[n]];
+    return m->part[n];
 }
 
 static bool make_unit(double *v, double least)
@@ -417,27 +446,22 @@ static int64_t spread(muscle_field *m, bool lacking)
     return gained;
 }
 
-int field_fibres(field *f, int32_t volume, const attachment *of, int64_t count, const double *axis, err *e)
+int field_fibres(muscle_field *m, pool *threads, const attachment *of, int64_t count, const double *axis, err *e)
 {
-    const body *b = f->b;
-    muscle_field m = {.f = f,
-                      .volume = volume,
-                      .axis = axis,
-                      .element = &b->element[b->start[volume]],
-                      .elements = b->start[volume + 1] - b->start[volume]};
-    int rc = -1;
-    if (muscle_open(&m, e))
-        goto out;
-    if ((!find_first(&m) && (find_way(&m, e) || (turn_round(&m), 0))) || find_way(&m, e) ||
-        find_second(&m, of, count, e) || find_directions(&m, e))
-        goto out;
-    spread(&m, false);
-    while (spread(&m, true))
+    m->axis = axis;
+    if (make_room(m, threads, e))
+        return -1;
+    if (!find_first(m)) {
+        if (find_way(m, e))
+            return -1;
+        turn_round(m);
+    }
+    if (find_way(m, e) || find_second(m, of, count, e) || find_directions(m, e))
+        return -1;
+    spread(m, false);
+    while (spread(m, true))
         ;
-    for (int64_t i = 0; i < 3 * m.elements; i++)
-        body_fibre(b, m.element[i / 3], volume)[i % 3] = (float)m.direction[i];
-    rc = 0;
-out:
-    muscle_close(&m);
-    return rc;
+    for (int64_t i = 0; i < 3 * m->elements; i++)
+        body_fibre(m->f->b, m->element[i / 3], m->volume)[i % 3] = (float)m->direction[i];
+    return 0;
 }

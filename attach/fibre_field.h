@@ -9,13 +9,20 @@
 #include "base/pool.h"
 
 typedef struct field field;
+typedef struct muscle_field muscle_field; /* one muscle in it */
 
 /* spacing: the voxel's sides, m. b's elements must be voxels. NULL with e filled. */
-field *field_create(const body *b, pool *threads, const double *spacing, err *e);
+field *field_create(const body *b, const double *spacing, err *e);
 void field_free(field *f);
 
-/* Fills the fibres of a volume at its elements, toward its first end; 0 0 0 where there is no direction. Each connected
- * piece of the volume has ends of its own. of, count: the attachments that b->part numbers.
+/* The nodes of a volume, with their attachments as b->part numbers them now. What is opened needs neither b->part nor
+ * the field's marks on nodes any more, which are one caller's at a time. The caller closes it. NULL with e filled. */
+muscle_field *field_open(field *f, int32_t volume, err *e);
+void field_close(muscle_field *m);
+
+/* Fills the fibres of the volume at its elements, toward its first end; 0 0 0 where there is no direction. Once for
+ * what is opened; several muscles may be filled at a time. threads: NULL for the caller alone. Each connected piece of
+ * the volume has ends of its own. of, count: the attachments that b->part numbered.
  * - The first end: the piece's largest attachment; where it has none, see below.
  * - How far along the piece a place is: with a uniform source and the first end held at 0, the potential is that of a
  *   rod, u = source (L s - s^2 / 2): s / L = 1 - sqrt(1 - u / max u), L = sqrt(2 max u / source).
@@ -27,6 +34,6 @@ void field_free(field *f);
  *   axis (unit, or NULL), becomes the first, and the second is found from that.
  * Directions are means over the elements that meet at each node, then over each element's nodes: the sides of voxels
  * are steps. Where all of an element is held, its neighbours' direction is its own. */
-int field_fibres(field *f, int32_t volume, const attachment *of, int64_t count, const double *axis, err *e);
+int field_fibres(muscle_field *m, pool *threads, const attachment *of, int64_t count, const double *axis, err *e);
 
 #endif

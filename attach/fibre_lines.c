@@ -156,7 +156,7 @@ static void set_some(void *context, int64_t chunk, int64_t from, int64_t to)
     }
 }
 
-/* What muscle_make and voxelise left in the model. */
+/* What muscle_fibres and voxelise left in the model. */
 static void find_arrays(work *w)
 {
     const model *m = w->m;

@@ -47,28 +47,38 @@ static bool always(const fibre_case *c)
 
 /* ---- what it does */
 
-/* count: of the muscle's attachments, which b->part numbers. */
-static int along_voxels(fibre_case *c, const attachment *of, int64_t count, err *e)
-{
-    lattice grid;
-    if (!c->voxels && !lattice_of(c->m, &grid, e))
-        c->voxels = field_create(c->b, c->threads, grid.spacing, e);
-    return c->voxels ? field_fibres(c->voxels, c->of->volume, of, count, NULL, e) : -1;
-}
+/* Elements: with more of them, the threads share the loops over one muscle; with fewer, such loops are too short. */
+enum { MANY = 1 << 15 };
 
 /* The muscle's attachments are found again, since b->part holds one muscle's. */
+static muscle_field *open_voxels(fibre_case *c, attachments *own, err *e)
+{
+    lattice grid;
+    if (attachments_find(own, c->b, c->index, c->of->volume, e))
+        return NULL;
+    if (!c->voxels->of && !lattice_of(c->m, &grid, e))
+        c->voxels->of = field_create(c->b, grid.spacing, e);
+    return c->voxels->of ? field_open(c->voxels->of, c->of->volume, e) : NULL;
+}
+
 static int fill_field(fibre_case *c, err *e)
 {
     attachments own = {0};
-    const int rc = c->of->elements &&
-                   (attachments_find(&own, c->b, c->index, c->of->volume, e) || along_voxels(c, own.of, own.count, e));
+    c->is_left = !c->threads && c->of->elements > MANY;
+    if (!c->of->elements || c->is_left)
+        return 0;
+    pthread_mutex_lock(&c->voxels->lock);
+    muscle_field *m = open_voxels(c, &own, e);
+    pthread_mutex_unlock(&c->voxels->lock);
+    const int rc = m ? field_fibres(m, c->threads, own.of, own.count, NULL, e) : -1;
+    field_close(m);
     free(own.of);
-    return rc ? -1 : 0;
+    return rc;
 }
 
 static int fill_shape(fibre_case *c, err *e)
 {
-    return c->shape ? muscle_shape_fibres(c->shape, c->b, c->of->volume, c->threads, e) : fill_field(c, e);
+    return c->shape ? muscle_shape_fibres(c->shape, c->b, c->of->volume, e) : fill_field(c, e);
 }
 
 /* Round its own line; what is no ring is an arc of a sphincter, and has its fibres from end to end. */

@@ -11,6 +11,15 @@
 #include "muscle.h"
 #include "muscle_shape.h"
 
+#include <pthread.h>
+
+/* The voxels of all muscles. Marks on their nodes, which are here and in body.part, are one muscle's at a time: the
+ * lock's. */
+typedef struct fibre_voxels {
+    pthread_mutex_t lock;
+    field *of; /* made when a rule first needs it; the creator of this frees it */
+} fibre_voxels;
+
 /* What a rule knows of a muscle. */
 typedef struct fibre_case {
     const model *m;
@@ -19,16 +28,17 @@ typedef struct fibre_case {
     int32_t index;       /* of the muscle */
     muscle_shape *shape; /* NULL: the model has no closed surface of it */
     const ring *ring;    /* NULL: it is none */
-    pool *threads;
-    field *voxels; /* made when a rule first needs it, for all muscles; the caller frees it */
+    fibre_voxels *voxels;
+    pool *threads; /* NULL: this thread alone, as other threads have other muscles */
+    bool is_left;  /* it is more than one thread is for: nothing was filled, and all of them are to do it */
 } fibre_case;
 
 typedef struct fibre_rule {
     const char *name;
     const char *what; /* one line, for the manual */
     bool (*applies)(const fibre_case *c);
-    /* Fills the fibres of the muscle's elements; those that stay 0 0 0 get its axis. NULL: muscle.c sets them one by
-     * one. -1 with e filled. */
+    /* Fills the fibres of the muscle's elements; those that stay 0 0 0 get its axis. NULL: muscle_fibres.c sets them
+     * one by one. -1 with e filled. */
     int (*fill)(fibre_case *c, err *e);
 } fibre_rule;
 

@@ -327,7 +327,7 @@ int film_sides_make(film_sides *s, const model *m, const rigid *r, err *e)
     const model_array *fraction = model_find(m, "element.fraction"), *inside = model_find(m, "element.inside");
     int64_t first = 0;
     *s = (film_sides){.fraction = fraction ? fraction->f32 : NULL, .inside = inside ? inside->f32 : NULL};
-    if (lattice_of(m, &s->grid, e) || lattice_map_build(&s->map, m, e) || gather(s, r, e))
+    if (lattice_of(m, &s->grid, e) || lattice_map_build(&s->map, m, NULL, e) || gather(s, r, e))
         return -1;
     s->cell = model_find(m, "element.lattice")->i32;
     for (int64_t i = 0; i < r->primitives; first += r->primitive[i++].corners)

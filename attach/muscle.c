@@ -1,25 +1,15 @@
 #include "muscle.h"
 
 #include "base/mem.h"
-#include "cli/listing.h"
 #include "fibre_rule.h"
 #include "mesh/lattice.h"
 #include "muscle_body.h"
-#include "muscle_surface.h"
 #include "place/principal.h"
 
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* A length to compare others with. */
-static double element_size(const body *b, int64_t element)
-{
-    const double *x = &b->position[3 * (int64_t)b->node[b->columns * element]];
-    const double *y = &b->position[3 * (int64_t)b->node[b->columns * element + b->columns - 1]];
-    return sqrt((x[0] - y[0]) * (x[0] - y[0]) + (x[1] - y[1]) * (x[1] - y[1]) + (x[2] - y[2]) * (x[2] - y[2]));
-}
 
 /* The part that the muscle has at each of its nodes. */
 static void find_held(const body *b, const muscle *m, int32_t index)
@@ -111,132 +101,6 @@ static void find_axis(const body *b, muscle *m)
             m->axis[a] = -m->axis[a];
 }
 
-/* Which rule gave an element its fibre: the one asked for, the axis in its place, or none. */
-typedef enum rule { BY_RULE, BY_AXIS, BY_NONE } rule;
-
-/* Sets the fibre of one element. */
-static rule set_fibre(const body *b, const muscle *m, int64_t element)
-{
-    const muscle_fibre kind = m->rule;
-    double line[3], length = 0, centre[3];
-    body_centre(b, element, centre);
-    for (int a = 0; a < 3; a++) {
-        line[a] = m->centre[a] - centre[a];
-        length += line[a] * line[a];
-    }
-    length = sqrt(length);
-    if (kind == MUSCLE_CENTRE && !m->rigid_nodes)
-        return BY_NONE;
-    float *fibre = body_fibre(b, element, m->volume);
-    if (fibre_rules[kind].fill && (fibre[0] != 0 || fibre[1] != 0 || fibre[2] != 0))
-        return BY_RULE;
-    bool along_axis = kind != MUSCLE_CENTRE || length <= 1e-9 * element_size(b, element);
-    for (int a = 0; a < 3; a++)
-        fibre[a] = (float)(along_axis ? m->axis[a] : line[a] / length);
-    if (along_axis && m->axis[0] == 0 && m->axis[1] == 0 && m->axis[2] == 0)
-        return BY_NONE;
-    return along_axis && kind != MUSCLE_AXIS ? BY_AXIS : BY_RULE;
-}
-
-static bool can_move(const body *b, int64_t element)
-{
-    for (int n = 0; n < b->columns; n++)
-        if (!b->rigid[b->node[b->columns * element + n]])
-            return true;
-    return false;
-}
-
-/* What of a muscle will not contract, and why. */
-typedef enum lack { NOTHING, NO_ELEMENT, NO_FREE_NODE, NO_RIGID_NODE, NO_AXIS, LACKS } lack;
-
-static lack lack_of(const muscle *m)
-{
-    if (!m->elements)
-        return NO_ELEMENT;
-    if (m->still == m->elements)
-        return NO_FREE_NODE;
-    if (!m->rigid_nodes && m->rule == MUSCLE_CENTRE)
-        return NO_RIGID_NODE;
-    return m->without ? NO_AXIS : NOTHING;
-}
-
-/* One muscle: its own sentence. */
-static void warn_of_one(const muscle *m, notes *warnings)
-{
-    switch (lack_of(m)) {
-    case NO_ELEMENT:
-        notes_add(warnings, "%s has no elements: it will not contract; voxelise says why", m->name);
-        break;
-    case NO_FREE_NODE:
-        notes_add(warnings,
-                  "%s has no node that is free: it will not contract; smaller voxels or a lower --strictness may leave "
-                  "some free",
-                  m->name);
-        break;
-    case NO_RIGID_NODE:
-        notes_add(warnings,
-                  "%s has no rigid node, so no contraction centre and no fibres: it will not contract; --fibre field "
-                  "gives it fibres without one",
-                  m->name);
-        break;
-    case NO_AXIS:
-        notes_add(warnings,
-                  "%s has no axis that is the longest: %lld of its %lld elements have no fibre and will not contract; "
-                  "%s",
-                  m->name, (long long)m->without, (long long)m->elements,
-                  fibre_rules[m->rule].fill ? "smaller voxels give it a shape" : "--fibre field needs no axis");
-        break;
-    default:
-        break;
-    }
-}
-
-/* Several muscles with the same lack: one sentence for all. */
-static void warn_of_many(lack what, listing *names, muscle_fibre kind, notes *warnings)
-{
-    static const char *const have[LACKS] = {
-        [NO_ELEMENT] = "no elements, and will not contract",
-        [NO_FREE_NODE] = "no node that is free, and will not contract",
-        [NO_RIGID_NODE] = "no rigid node, so no contraction centre and no fibres, and will not contract",
-        [NO_AXIS] = "no axis that is the longest, and elements without a fibre, which will not contract"};
-    static const char *const remedy[LACKS] = {[NO_ELEMENT] = "voxelise says why",
-                                              [NO_FREE_NODE] =
-                                                  "smaller voxels or a lower --strictness may leave some free",
-                                              [NO_RIGID_NODE] = "--fibre field gives them fibres without one",
-                                              [NO_AXIS] = "--fibre field needs no axis"};
-    const long long count = names->count;
-    notes_add(warnings, "%lld muscles have %s: %s; %s", count, have[what], listing_text(names),
-              what == NO_AXIS && fibre_rules[kind].fill ? "smaller voxels give them a shape" : remedy[what]);
-}
-
-/* One line for each thing that muscles lack. */
-static void warn_of_all(const muscles *list, notes *warnings)
-{
-    for (lack what = NO_ELEMENT; what < LACKS; what++) {
-        listing names = {0};
-        const muscle *last = NULL;
-        for (int64_t i = 0; i < list->count; i++)
-            if (lack_of(&list->of[i]) == what) {
-                last = &list->of[i];
-                listing_add(&names, "%s", last->name);
-            }
-        if (names.count == 1)
-            warn_of_one(last, warnings);
-        else if (names.count)
-            warn_of_many(what, &names, last->rule, warnings);
-    }
-}
-
-static void set_fibres(const body *b, muscle *m)
-{
-    for (int64_t at = b->start[m->volume]; at < b->start[m->volume + 1]; at++) {
-        const rule by = set_fibre(b, m, b->element[at]);
-        m->by_axis += by == BY_AXIS;
-        m->without += by == BY_NONE;
-        m->still += !can_move(b, b->element[at]);
-    }
-}
-
 static int check_mixes(const body *b, const model_array *mix, err *e)
 {
     for (int64_t i = 0; mix && i < mix->rows; i++)
@@ -284,28 +148,33 @@ static int find_arrays(const model *m, body *b, err *e)
     return b->part ? find_mixes(m, b, e) : -1;
 }
 
-/* The elements of each volume, in their order, then those that it is the second in. */
-static int sort_elements(body *b, int64_t volumes, err *e)
+/* The elements of each muscle's volume, in their order, then those that it is the second in. */
+static int sort_elements(body *b, const model_array *is_muscle, err *e)
 {
+    const int64_t volumes = is_muscle->rows;
+    int64_t entries = 0;
     /* Counted two places up, so that filling leaves each volume's first in its place. */
     b->start = mem_array(volumes + 2, sizeof *b->start, "volumes", e);
-    int64_t entries = b->elements;
-    for (int64_t i = 0; b->mix && i < b->elements; i++)
-        entries += b->mix[i] >= 0;
-    b->element = b->start ? mem_array(entries, sizeof *b->element, "elements", e) : NULL;
-    if (!b->element)
+    if (!b->start)
         return -1;
     for (int64_t i = 0; i < b->elements; i++) {
-        b->start[b->volume[i] + 2]++;
-        if (b->mix && b->mix[i] >= 0)
-            b->start[b->mix[i] + 2]++;
+        const int32_t volume = b->volume[i], second = b->mix ? b->mix[i] : -1;
+        b->start[volume + 2] += is_muscle->u8[volume];
+        if (second >= 0)
+            b->start[second + 2] += is_muscle->u8[second];
     }
-    for (int64_t v = 0; v < volumes; v++)
+    for (int64_t v = 0; v < volumes; v++) {
+        entries += b->start[v + 2];
         b->start[v + 2] += b->start[v + 1];
+    }
+    b->element = mem_array(entries, sizeof *b->element, "elements", e);
+    if (!b->element)
+        return -1;
     for (int64_t i = 0; i < b->elements; i++)
-        b->element[b->start[b->volume[i] + 1]++] = i;
+        if (is_muscle->u8[b->volume[i]])
+            b->element[b->start[b->volume[i] + 1]++] = i;
     for (int64_t i = 0; b->mix && i < b->elements; i++)
-        if (b->mix[i] >= 0)
+        if (b->mix[i] >= 0 && is_muscle->u8[b->mix[i]])
             b->element[b->start[b->mix[i] + 1]++] = i;
     return 0;
 }
@@ -368,157 +237,41 @@ static int add_arrays(model *m, body *b, const muscles *list, err *e)
     return a ? 0 : -1;
 }
 
-/* ---- rules */
-
-/* Points that a muscle consists of: the cells of its shape, or else its elements' centres. */
-static int find_points(const fibre_case *c, double **place, double **weight, ring_points *p, err *e)
+static void body_free(body *b)
 {
-    p->count = c->shape ? muscle_shape_cells(c->shape) : c->of->elements;
-    *place = mem_array(3 * p->count, sizeof **place, "a muscle", e);
-    *weight = *place ? mem_array(p->count, sizeof **weight, "a muscle", e) : NULL;
-    if (!*weight)
-        return -1;
-    for (int64_t i = 0; i < p->count; i++) {
-        (*weight)[i] = 1;
-        if (c->shape) {
-            muscle_shape_place(c->shape, i, *place + 3 * i);
-            continue;
-        }
-        const int64_t element = c->b->element[c->b->start[c->of->volume] + i];
-        body_centre(c->b, element, *place + 3 * i);
-        (*weight)[i] = body_share(c->b, element, c->of->volume);
-    }
-    p->place = *place;
-    p->weight = *weight;
-    return 0;
+    if (!b)
+        return;
+    free(b->seen);
+    free(b->held);
+    free(b->part);
+    free(b->start);
+    free(b->element);
+    free(b);
 }
 
-static int find_ring(fibre_case *c, muscle *of, ring *r, err *e)
+int muscle_find(model *m, const opt_list *asked, muscles *list, notes *warnings, err *e)
 {
-    double *place = NULL, *weight = NULL;
-    ring_points p;
-    const int rc = find_points(c, &place, &weight, &p, e);
-    of->is_ring = !rc && ring_find(r, &p);
-    c->ring = of->is_ring ? r : NULL;
-    free(place);
-    free(weight);
-    return rc;
-}
-
-/* Fibres that a rule has laid run toward the contraction centre, as others do; those of a ring run round. */
-static void turn_fibres(const body *b, const muscle *m)
-{
-    double along = 0;
-    for (int64_t at = b->start[m->volume]; at < b->start[m->volume + 1]; at++)
-        for (int a = 0; a < 3; a++)
-            along += m->axis[a] * (double)body_fibre(b, b->element[at], m->volume)[a];
-    for (int64_t at = b->start[m->volume]; along < 0 && at < b->start[m->volume + 1]; at++)
-        for (int a = 0; a < 3; a++) {
-            float *fibre = body_fibre(b, b->element[at], m->volume) + a;
-            *fibre = *fibre != 0 ? -*fibre : 0;
-        }
-}
-
-/* The shape of a muscle, or NULL where it has no closed surface that encloses something. -1 with e filled. */
-static int find_shape(const muscle_surfaces *surfaces, int32_t index, muscle_shape **shape, err *e)
-{
-    trimesh own = {0};
-    int rc = muscle_surface_take(surfaces, index, &own, e);
-    if (!rc && own.triangles && !(*shape = muscle_shape_create(&own, e)))
-        rc = -1;
-    if (*shape && !muscle_shape_cells(*shape)) {
-        muscle_shape_free(*shape);
-        *shape = NULL;
-    }
-    trimesh_free(&own);
-    return rc;
-}
-
-/* Chooses the muscle's rule, and lays its fibres by it. */
-static int follow_rule(fibre_case *c, muscle *of, const muscle_surfaces *surfaces, err *e)
-{
-    muscle_shape *shape = NULL;
-    ring r;
-    const bool looks = of->asked < 0 || of->asked == MUSCLE_ROUND || of->asked == MUSCLE_SHAPE;
-    int rc = looks ? find_shape(surfaces, c->index, &shape, e) : 0;
-    c->of = of;
-    c->shape = shape;
-    c->ring = NULL;
-    if (!rc && (of->asked < 0 || of->asked == MUSCLE_ROUND))
-        rc = find_ring(c, of, &r, e);
-    of->rule = of->asked >= 0 ? (muscle_fibre)of->asked : fibre_rule_for(c);
-    if (!rc && fibre_rules[of->rule].fill)
-        rc = fibre_rules[of->rule].fill(c, e);
-    if (!rc && fibre_rules[of->rule].fill && of->rule != MUSCLE_FIELD && !of->is_ring)
-        turn_fibres(c->b, of);
-    muscle_shape_free(shape);
-    return rc;
-}
-
-static int follow_rules(const model *m, const body *b, muscles *list, pool *threads, err *e)
-{
-    muscle_surfaces surfaces = {0};
-    fibre_case c = {.m = m, .b = b, .threads = threads};
-    const char **name = mem_array(list->count, sizeof *name, "muscles", e);
-    int rc = name ? 0 : -1;
-    for (int64_t i = 0; name && i < list->count; i++)
-        name[i] = list->of[i].name;
-    rc = rc || muscle_surfaces_find(&surfaces, m, name, list->count, e) ? -1 : 0;
-    for (int64_t i = 0; !rc && i < list->count; i++) {
-        c.index = (int32_t)i;
-        rc = follow_rule(&c, &list->of[i], &surfaces, e);
-        if (!rc)
-            set_fibres(b, &list->of[i]);
-    }
-    field_free(c.voxels);
-    muscle_surfaces_free(&surfaces);
-    free(name);
-    return rc;
-}
-
-static int add_rules(model *m, const muscles *list, err *e)
-{
-    model_array *a = model_add(m, "muscle.fibre", e);
-    for (int64_t i = 0; a && i < list->count; i++)
-        if (model_set_text(a, i, fibre_rules[list->of[i].rule].name, e))
-            return -1;
-    return a ? 0 : -1;
-}
-
-int muscle_make(model *m, const opt_list *asked, pool *threads, muscles *list, notes *warnings, err *e)
-{
-    body b = {0};
-    int rc = -1;
-    *list = (muscles){0};
+    body *b = mem_array(1, sizeof *b, "muscles", e);
+    *list = (muscles){.body = b};
     model_axis_drop(m, "muscle", warnings);
     model_axis_drop(m, "attachment", warnings);
     model_remove(m, "element.fibre");
     model_remove(m, "element.mixfibre");
-    if (find_arrays(m, &b, e) || find_muscles(m, list, e) || sort_elements(&b, model_count(m, "volume"), e) ||
+    if (!b || find_arrays(m, b, e) || find_muscles(m, list, e) || sort_elements(b, model_find(m, "volume.muscle"), e) ||
         fibre_rules_asked(list, asked, e))
-        goto out;
+        return -1;
     for (int64_t i = 0; i < list->count; i++) {
-        find_centres(&b, &list->of[i], (int32_t)i);
-        find_axis(&b, &list->of[i]);
-        if (attachments_find(&list->attached, &b, (int32_t)i, list->of[i].volume, e))
-            goto out;
+        find_centres(b, &list->of[i], (int32_t)i);
+        find_axis(b, &list->of[i]);
+        if (attachments_find(&list->attached, b, (int32_t)i, list->of[i].volume, e))
+            return -1;
     }
-    if (add_arrays(m, &b, list, e) || follow_rules(m, &b, list, threads, e) ||
-        (!fibre_rules_single(asked) && add_rules(m, list, e)))
-        goto out;
-    warn_of_all(list, warnings);
-    rc = 0;
-out:
-    free(b.seen);
-    free(b.held);
-    free(b.part);
-    free(b.start);
-    free(b.element);
-    return rc;
+    return add_arrays(m, b, list, e);
 }
 
 void muscles_free(muscles *list)
 {
+    body_free(list->body);
     free(list->of);
     free(list->attached.of);
     *list = (muscles){0};

@@ -5,9 +5,9 @@
 #define SINEW_MUSCLE_H
 
 #include "attachment.h"
-#include "base/pool.h"
 #include "cli/opt.h"
 #include "model/model.h"
+#include "muscle_body.h"
 
 /* The rules that give fibres (fibre_rule.h), in the order in which they are tried. */
 typedef enum muscle_fibre {
@@ -41,15 +41,15 @@ typedef struct muscles {
     muscle *of;
     int64_t count;
     attachments attached;
+    body *body; /* what they are computed from */
 } muscles;
 
 /* Makes the axis muscle with muscle.volume and muscle.centre, the axis attachment with attachment.muscle and its other
- * arrays, and element.fibre (and element.mixfibre where there is element.mix), in place of those that are there, from
- * node.rigid (and node.anchor, element.fraction and element.mix, where there are any), the volumes that are muscles,
- * and their surfaces. asked: the values of --fibre; unless it gives one rule to all, muscle.fibre says which each has.
- * An element that lies at the contraction centre gets the axis. Notes the muscles that can have no centre or no fibres.
- * Spreads are weighted by its shares. The caller frees the list, on failure too. */
-int muscle_make(model *m, const opt_list *asked, pool *threads, muscles *list, notes *warnings, err *e);
+ * arrays, and element.fibre (and element.mixfibre where there is element.mix), of zeros yet (muscle_fibres.h), in place
+ * of those that are there, from node.rigid (and node.anchor, element.fraction and element.mix, where there are any),
+ * and the volumes that are muscles. asked: the values of --fibre. Spreads are weighted by its shares. The caller frees
+ * the list, on failure too. */
+int muscle_find(model *m, const opt_list *asked, muscles *list, notes *warnings, err *e);
 
 /* Whether it has an element that has a fibre, and one that has a free node. */
 static inline bool muscle_contracts(const muscle *m)

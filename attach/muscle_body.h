@@ -1,5 +1,5 @@
 /* The data that muscles are computed from: a model's arrays, its elements sorted by volume, and marks on its nodes. An
- * element mixed of two volumes belongs to both. A body borrows the model's arrays; muscle_make owns the rest.
+ * element mixed of two volumes belongs to both. A body borrows the model's arrays; the muscles own the rest.
  */
 #ifndef SINEW_MUSCLE_BODY_H
 #define SINEW_MUSCLE_BODY_H

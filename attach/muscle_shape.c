@@ -362,14 +362,16 @@ static int make_body(const muscle_shape *s, cells_body *c, body *b, err *e)
     return 0;
 }
 
-static int lay_fibres(muscle_shape *s, pool *threads, err *e)
+static int lay_fibres(muscle_shape *s, err *e)
 {
     cells_body c = {0};
     body b;
     double axis[3] = {0};
     axis[s->longest] = 1;
-    field *f = make_body(s, &c, &b, e) ? NULL : field_create(&b, threads, s->spacing, e);
-    const int rc = f ? field_fibres(f, 0, NULL, 0, axis, e) : -1;
+    field *f = make_body(s, &c, &b, e) ? NULL : field_create(&b, s->spacing, e);
+    muscle_field *m = f ? field_open(f, 0, e) : NULL;
+    const int rc = m ? field_fibres(m, NULL, NULL, 0, axis, e) : -1;
+    field_close(m);
     field_free(f);
     free(c.node);
     free(c.number);
@@ -380,11 +382,11 @@ static int lay_fibres(muscle_shape *s, pool *threads, err *e)
     return rc;
 }
 
-int muscle_shape_fibres(muscle_shape *s, const body *b, int32_t volume, pool *threads, err *e)
+int muscle_shape_fibres(muscle_shape *s, const body *b, int32_t volume, err *e)
 {
     if (!s->cells)
         return 0;
-    if (lay_fibres(s, threads, e))
+    if (lay_fibres(s, e))
         return -1;
     for (int64_t at = b->start[volume]; at < b->start[volume + 1]; at++)
         take_fibre(s, b, b->element[at], body_fibre(b, b->element[at], volume));

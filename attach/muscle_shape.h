@@ -6,7 +6,7 @@
 #ifndef SINEW_MUSCLE_SHAPE_H
 #define SINEW_MUSCLE_SHAPE_H
 
-#include "base/pool.h"
+#include "base/err.h"
 #include "muscle_body.h"
 #include "surface/trimesh.h"
 
@@ -22,6 +22,6 @@ void muscle_shape_place(const muscle_shape *s, int64_t cell, double place[3]);
 
 /* Fills the fibres of a volume at its elements: means over the cells about an element's centre. Where bone is plays no
  * part, as voxels touch it beside a muscle too. -1 with e filled. */
-int muscle_shape_fibres(muscle_shape *s, const body *b, int32_t volume, pool *threads, err *e);
+int muscle_shape_fibres(muscle_shape *s, const body *b, int32_t volume, err *e);
 
 #endif

@@ -95,15 +95,14 @@ static int target_open(target *to, const model *m, const struct options *o, int 
     to->corners = model_find(m, "element.node")->columns;
     to->by_lattice = to->corners == 8 && (model_meta_of(m, "lattice.spacing") || model_find(m, "element.lattice"));
     to->blended = to->by_lattice && o->motion != MOTION_ELEMENT;
-    if (to->by_lattice ? nearest_build(&to->voxels, m, e) : tetra_build(&to->tetrahedra, m, e))
+    to->threads = pool_create(threads, e);
+    if (!to->threads ||
+        (to->by_lattice ? nearest_build(&to->voxels, m, to->threads, e) : tetra_build(&to->tetrahedra, m, e)))
         return -1;
     if (to->tetrahedra.flat)
         notes_add(warnings, "%lld of the %s have no volume, and nothing is bound to them",
                   (long long)to->tetrahedra.flat, to->corners == 4 ? "tetrahedra" : "hexahedra");
-    if (to->by_lattice && side_create(&to->sides, m, &to->voxels, threads, e))
-        return -1;
-    to->threads = pool_create(threads, e);
-    return to->threads ? 0 : -1;
+    return to->by_lattice && side_create(&to->sides, m, &to->voxels, threads, e) ? -1 : 0;
 }
 
 static void target_close(target *to)
@@ -360,6 +359,20 @@ static int bind_carried(const tool *t, target *to, model *m, const struct option
     return 0;
 }
 
+/* What bind_surface makes anew. */
+static bool is_made(const model_array *a)
+{
+    const char *of = strchr(a->name, '/');
+    return of && (!strcmp(of, "/vertex.element") || !strcmp(of, "/vertex.weight") || !strcmp(of, "/vertex.blended"));
+}
+
+/* Where no axis and no surface is added, all that came is written while surfaces are bound. */
+static int write_ahead(const tool *t, stage *s, model *m, const struct options *o, int threads, err *e)
+{
+    const bool adds = t->operands || o->self_contact.count;
+    return adds || threads < 2 || !stage_is_large(m) ? 0 : stage_write_ahead(s, m, is_made, e);
+}
+
 /* Once the model carries the surfaces. */
 static int touch_itself(const tool *t, const target *to, model *m, const struct options *o, int threads,
                         notes *warnings, err *e)
@@ -417,7 +430,8 @@ static int run_tool(int argc, char **argv)
     if (stage_open_output(&s, &t, &e) || check_options(&o, t.operands, argv + 1, &e) ||
         (threads = tool_threads(&t, &e)) < 0)
         goto out;
-    if (stage_read(&s, &m, &e) || check_model(&m, &e) || target_open(&to, &m, &o, threads, &warnings, &e))
+    if (stage_read(&s, &m, &e) || check_model(&m, &e) || write_ahead(&t, &s, &m, &o, threads, &e) ||
+        target_open(&to, &m, &o, threads, &warnings, &e))
         goto out;
     if (t.operands ? bind_files(&t, &to, &m, argv + 1, &o, &warnings, &e)
                    : bind_carried(&t, &to, &m, &o, &warnings, &e))

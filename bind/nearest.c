@@ -4,6 +4,7 @@
 #include "mesh/weights.h"
 
 #include <math.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 
 static double shortest(const lattice *l)
@@ -16,27 +17,57 @@ static double longest(const lattice *l)
     return fmax(fmax(l->spacing[0], l->spacing[1]), l->spacing[2]);
 }
 
+/* What takes longer than to wake a thread. */
+enum { CHUNK = 1 << 14, BLOCKS = 1 << 16 }; /* elements, blocks */
+
+typedef struct boxes {
+    const nearest *n;
+    const int32_t *node, *ijk;
+    const double *position;
+    atomic_llong off; /* the first element that is not the box of its cell */
+} boxes;
+
+static bool is_box(const boxes *b, int64_t element)
+{
+    const weights_box box = weights_box_of(&b->node[8 * element], b->position);
+    const double *side = b->n->grid.spacing;
+    double corner[3];
+    lattice_corner(&b->n->grid, &b->ijk[3 * element], corner);
+    for (int a = 0; a < 3; a++) {
+        double off = fmax(fabs(box.first[a] - corner[a]), fabs(box.side[a] - side[a]));
+        if (!(off <= 1e-6 * side[a]))
+            return false;
+    }
+    return true;
+}
+
+static void check_some(void *context, int64_t chunk, int64_t from, int64_t to)
+{
+    boxes *b = context;
+    (void)chunk;
+    while (from < to && is_box(b, from))
+        from++;
+    long long before = atomic_load(&b->off);
+    while (from < to && from < before && !atomic_compare_exchange_weak(&b->off, &before, from))
+        ;
+}
+
 /* Each element must be where its cell is: the lookup goes by cells, the weights by nodes. */
-static int check_boxes(const nearest *n, const model *m, err *e)
+static int check_boxes(const nearest *n, const model *m, pool *threads, err *e)
 {
     const model_array *node = model_need(m, "element.node", e), *ijk = model_need(m, "element.lattice", e);
     const model_array *position = model_need(m, "node.position", e);
     if (!node || !ijk || !position)
         return -1;
-    for (int64_t i = 0; i < node->rows; i++) {
-        weights_box box = weights_box_of(&node->i32[8 * i], position->f64);
-        double corner[3];
-        lattice_corner(&n->grid, &ijk->i32[3 * i], corner);
-        for (int a = 0; a < 3; a++) {
-            double off = fmax(fabs(box.first[a] - corner[a]), fabs(box.side[a] - n->grid.spacing[a]));
-            if (!(off <= 1e-6 * n->grid.spacing[a]))
-                return err_set(
-                    e, NULL, 0,
-                    "element %lld is not the box of its lattice cell %d %d %d; expected a model from voxelise",
-                    (long long)i, ijk->i32[3 * i], ijk->i32[3 * i + 1], ijk->i32[3 * i + 2]);
-        }
-    }
-    return 0;
+    boxes b = {.n = n, .node = node->i32, .ijk = ijk->i32, .position = position->f64};
+    atomic_init(&b.off, INT64_MAX);
+    pool_run(threads, node->rows, CHUNK, check_some, &b);
+    const int64_t off = atomic_load(&b.off);
+    if (off == INT64_MAX)
+        return 0;
+    return err_set(e, NULL, 0,
+                   "element %lld is not the box of its lattice cell %d %d %d; expected a model from voxelise",
+                   (long long)off, ijk->i32[3 * off], ijk->i32[3 * off + 1], ijk->i32[3 * off + 2]);
 }
 
 static bool occupied(const nearest *n, int level, int32_t i, int32_t j, int32_t k)
@@ -46,8 +77,23 @@ static bool occupied(const nearest *n, int level, int32_t i, int32_t j, int32_t 
     return level ? l->occupied[at] : n->map.element[at] >= 0;
 }
 
+/* Layers of the last level. */
+static void gather_some(void *context, int64_t chunk, int64_t from, int64_t to)
+{
+    const nearest *n = context;
+    const nearest_level *below = &n->level[n->levels - 1], *l = below + 1;
+    const int64_t last = 2 * to < below->size[2] ? 2 * to : below->size[2];
+    (void)chunk;
+    for (int64_t k = 2 * from; k < last; k++)
+        for (int32_t j = 0; j < below->size[1]; j++) {
+            uint8_t *row = &l->occupied[(k / 2 * l->size[1] + j / 2) * l->size[0]];
+            for (int32_t i = 0; i < below->size[0]; i++)
+                row[i / 2] |= occupied(n, n->levels - 1, i, j, (int32_t)k);
+        }
+}
+
 /* Adds the level above the last one. */
-static int add_level(nearest *n, err *e)
+static int add_level(nearest *n, pool *threads, err *e)
 {
     const nearest_level *below = &n->level[n->levels - 1];
     nearest_level *l = &n->level[n->levels];
@@ -57,12 +103,7 @@ static int add_level(nearest *n, err *e)
     l->occupied = mem_array(blocks, 1, "the lattice's blocks", e);
     if (!l->occupied)
         return -1;
-    for (int32_t k = 0; k < below->size[2]; k++)
-        for (int32_t j = 0; j < below->size[1]; j++) {
-            uint8_t *row = &l->occupied[((int64_t)(k / 2) * l->size[1] + j / 2) * l->size[0]];
-            for (int32_t i = 0; i < below->size[0]; i++)
-                row[i / 2] |= occupied(n, n->levels - 1, i, j, k);
-        }
+    pool_run(threads, l->size[2], blocks > BLOCKS ? 1 : l->size[2], gather_some, n);
     n->levels++;
     return 0;
 }
@@ -72,16 +113,16 @@ static bool is_one(const nearest_level *l)
     return l->size[0] == 1 && l->size[1] == 1 && l->size[2] == 1;
 }
 
-int nearest_build(nearest *n, const model *m, err *e)
+int nearest_build(nearest *n, const model *m, pool *threads, err *e)
 {
     *n = (nearest){0};
-    if (lattice_of(m, &n->grid, e) || lattice_map_build(&n->map, m, e) || check_boxes(n, m, e))
+    if (lattice_of(m, &n->grid, e) || lattice_map_build(&n->map, m, threads, e) || check_boxes(n, m, threads, e))
         goto bad;
     for (int a = 0; a < 3; a++)
         n->level[0].size[a] = n->map.size[a];
     n->levels = 1;
     while (!is_one(&n->level[n->levels - 1]))
-        if (add_level(n, e))
+        if (add_level(n, threads, e))
             goto bad;
     n->tie = 1e-9 * shortest(&n->grid);
     n->margin = 1e-9 * longest(&n->grid) / shortest(&n->grid);

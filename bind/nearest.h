@@ -23,8 +23,8 @@ typedef struct nearest {
     double margin; /* further than this from its cell's sides (in cells), a point can have no tie */
 } nearest;
 
-/* m needs at least one hexahedron, each the box of its cell. -1 with e filled. */
-int nearest_build(nearest *n, const model *m, err *e);
+/* m needs at least one hexahedron, each the box of its cell. threads: NULL for the caller alone. -1 with e filled. */
+int nearest_build(nearest *n, const model *m, pool *threads, err *e);
 void nearest_free(nearest *n);
 
 /* point: finite, m. Of equally near elements (to 1e-9 of a cell's shortest side) the one of the lowest index. */

@@ -5,6 +5,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 enum { CHUNK = 2048 };             /* elements or nodes: the sums depend on it */
 static const double small = 1e-10; /* of the residual at the start */
@@ -115,15 +116,14 @@ static void flow_some(void *context, int64_t chunk, int64_t from, int64_t to)
     laplace *l = context;
     (void)chunk;
     for (int64_t e = from; e < to; e++) {
-        double in[8], share = share_of(l, e);
-        for (int n = 0; n < 8; n++)
-            in[n] = share * l->p[l->node[8 * e + n]];
-        for (int m = 0; m < 8; m++) {
-            double sum = 0;
-            for (int n = 0; n < 8; n++)
-                sum += l->stiffness[m][n] * in[n];
-            l->flow[8 * e + m] = sum;
+        const double share = share_of(l, e);
+        double sum[8] = {0};
+        for (int n = 0; n < 8; n++) { /* the matrix is symmetric: its rows are its columns */
+            const double in = share * l->p[l->node[8 * e + n]];
+            for (int m = 0; m < 8; m++)
+                sum[m] += l->stiffness[n][m] * in;
         }
+        memcpy(&l->flow[8 * e], sum, sizeof sum);
     }
 }
 

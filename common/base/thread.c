@@ -1,6 +1,7 @@
 #define _GNU_SOURCE /* syscall */
 #include "base/thread.h"
 
+#include <signal.h>
 #include <stddef.h>
 #include <sys/resource.h>
 #include <sys/syscall.h>
@@ -20,6 +21,16 @@ int thread_start(pthread_t *thread, void *(*work)(void *), void *context)
     if (!code)
         code = pthread_create(thread, &how, work, context);
     pthread_attr_destroy(&how);
+    return code;
+}
+
+int thread_start_quiet(pthread_t *thread, void *(*work)(void *), void *context)
+{
+    sigset_t all, before;
+    sigfillset(&all);
+    pthread_sigmask(SIG_BLOCK, &all, &before);
+    const int code = thread_start(thread, work, context);
+    pthread_sigmask(SIG_SETMASK, &before, NULL);
     return code;
 }
 

@@ -3,7 +3,6 @@
 #include "base/mem.h"
 #include "base/thread.h"
 
-#include <signal.h>
 #include <stdlib.h>
 
 enum { FRAMES = 2 };
@@ -46,14 +45,9 @@ static void *work(void *context)
     return NULL;
 }
 
-/* Signals are the main thread's. */
 static int start(frame_queue *q, err *e)
 {
-    sigset_t all, before;
-    sigfillset(&all);
-    pthread_sigmask(SIG_BLOCK, &all, &before);
-    const int code = thread_start(&q->thread, work, q);
-    pthread_sigmask(SIG_SETMASK, &before, NULL);
+    const int code = thread_start_quiet(&q->thread, work, q);
     q->threaded = !code;
     return code ? err_system(e, NULL, code, "a thread for the frames") : 0;
 }

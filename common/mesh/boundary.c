@@ -78,7 +78,7 @@ static bool is_covered(const elements *x, const lattice_map *map, const int32_t 
 static int of_lattice(boundary *b, const elements *x, const model *m, const int32_t *cell, err *e)
 {
     lattice_map map = {0};
-    int bad = lattice_map_build(&map, m, e);
+    int bad = lattice_map_build(&map, m, NULL, e);
     for (int64_t n = 0; n < x->count && !bad; n++)
         for (int side = 0; side < 6 && kept(x, n) && !bad; side++)
             if (!is_covered(x, &map, cell, n, side))

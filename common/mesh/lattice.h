@@ -4,6 +4,7 @@
 #ifndef SINEW_LATTICE_H
 #define SINEW_LATTICE_H
 
+#include "base/pool.h"
 #include "model/model.h"
 
 typedef struct lattice {
@@ -37,8 +38,9 @@ typedef struct lattice_map {
     int32_t *next;           /* elements: the next higher one in the same cell, or -1; NULL: no cell has several */
 } lattice_map;
 
-/* Builds the lookup from element.lattice. -1 with e filled on no memory, and on cells too far apart. */
-int lattice_map_build(lattice_map *map, const model *m, err *e);
+/* Builds the lookup from element.lattice. threads: NULL for the caller alone. -1 with e filled on no memory, and on
+ * cells too far apart. */
+int lattice_map_build(lattice_map *map, const model *m, pool *threads, err *e);
 void lattice_map_free(lattice_map *map);
 
 /* The next element in the cell of an element, or -1: where a slit parts a cell. */

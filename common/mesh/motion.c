@@ -18,8 +18,8 @@ typedef struct making {
     motion *m;
     const bound *b;
     int64_t nodes, elements;
-    int32_t *place;  /* nodes: coincident.h */
-    int32_t *copies; /* places: nodes at one place */
+    int32_t *place;  /* nodes: coincident.h; -1: of no element that has an entry */
+    int32_t *copies; /* places: such nodes at one place */
 } making;
 
 static const int32_t *nodes_of(const bound *b, int64_t element)
@@ -120,15 +120,39 @@ static int part_slits(making *k, err *e)
     return 0;
 }
 
+/* Numbers the nodes of the elements that have entries, which are few, and gathers where they are. Returns how many. */
+static int64_t gather_nodes(making *k, double *position)
+{
+    int64_t count = 0;
+    for (int64_t n = 0; n < k->nodes; n++)
+        k->place[n] = -1;
+    for (int64_t i = 0; i < 8 * k->m->entries; i++) {
+        const int32_t node = nodes_of(k->b, k->m->element[i / 8])[i % 8];
+        if (k->place[node] >= 0)
+            continue;
+        k->place[node] = (int32_t)count;
+        memcpy(position + 3 * count++, k->b->rest + 3 * (int64_t)node, 3 * sizeof *position);
+    }
+    return count;
+}
+
+/* Only these nodes can conflict. */
 static int find_copies(making *k, err *e)
 {
-    k->place = mem_array(k->nodes, sizeof *k->place, "the surface's nodes", e);
-    k->copies = k->place ? mem_array(k->nodes, sizeof *k->copies, "the surface's nodes", e) : NULL;
-    if (!k->copies || coincident_places(k->b->rest, k->nodes, k->place, e) < 0)
-        return -1;
-    for (int64_t n = 0; n < k->nodes; n++)
-        k->copies[k->place[n]]++;
-    return 0;
+    const int64_t most = 8 * k->m->entries < k->nodes ? 8 * k->m->entries : k->nodes;
+    double *position = mem_array(3 * most, sizeof *position, "the surface's nodes", e);
+    int32_t *at = position ? mem_array(most, sizeof *at, "the surface's nodes", e) : NULL;
+    k->copies = at ? mem_array(most, sizeof *k->copies, "the surface's nodes", e) : NULL;
+    k->place = k->copies ? mem_array(k->nodes, sizeof *k->place, "the surface's nodes", e) : NULL;
+    const int64_t count = k->place ? gather_nodes(k, position) : 0;
+    const int status = k->place && coincident_places(position, count, at, e) >= 0 ? 0 : -1;
+    for (int64_t n = 0; n < count && !status; n++)
+        k->copies[at[n]]++;
+    for (int64_t n = 0; n < k->nodes && !status; n++)
+        k->place[n] = k->place[n] < 0 ? -1 : at[k->place[n]];
+    free(position);
+    free(at);
+    return status;
 }
 
 /* ---- opening */

@@ -5,7 +5,7 @@
 #include "model/model_share.h"
 
 #include <inttypes.h>
-#include <signal.h>
+#include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -40,61 +40,99 @@ int stage_read(stage *s, model *m, err *e)
     return s->reader ? model_read(s->reader, m, e) : -1;
 }
 
-static int add_provenance(const stage *s, model *m, err *e)
+static int add_provenance(stage *s, model *m, err *e)
 {
+    if (s->has_provenance)
+        return 0;
+    s->has_provenance = true;
     return model_prov_add(m, s->t->table->name, SINEW_VERSION, s->t->provenance ? s->t->provenance : "", e);
 }
 
-int stage_write(stage *s, model *m, err *e)
-{
-    if (add_provenance(s, m, e))
-        return -1;
-    return model_write(s->writer, m, e);
-}
+/* What is written on a thread. The model is shared: it is as it was when this began. */
+struct stage_ahead {
+    pthread_t thread;
+    model_writer *w;
+    model m;
+    bool whole;
+    int arrays; /* where it is not the whole: its first */
+    err *failed;
+};
 
-static int64_t bytes_of(const model *m)
+static void *write_some(void *context)
 {
-    int64_t bytes = 0;
-    for (int i = 0; i < m->arrays.count; i++)
-        bytes += m->arrays.v[i].rows * m->arrays.v[i].columns * (int64_t)model_type_size(m->arrays.v[i].type);
-    return bytes;
-}
-
-static void *write_work(void *argument)
-{
-    stage *s = argument;
-    model_write(s->writer, s->beside, &s->beside_error);
+    stage_ahead *a = context;
+    if (a->whole)
+        model_write(a->w, &a->m, a->failed);
+    else
+        model_write_ahead(a->w, &a->m, a->arrays, a->failed);
     return NULL;
 }
 
-int stage_write_beside(stage *s, model *m, err *e)
+static void free_ahead(stage *s)
 {
-    enum { LARGE = 1 << 22 }; /* bytes: fewer are written in a few milliseconds */
-    sigset_t all, before;
-    if (bytes_of(m) < LARGE)
-        return stage_write(s, m, e);
-    if (add_provenance(s, m, e))
-        return -1;
-    sigfillset(&all); /* signals are the main thread's */
-    pthread_sigmask(SIG_BLOCK, &all, &before);
-    s->beside = m;
-    const int code = thread_start(&s->thread, write_work, s);
-    pthread_sigmask(SIG_SETMASK, &before, NULL);
-    if (!code)
-        return 0;
-    s->beside = NULL;
-    return model_write(s->writer, m, e);
+    model_free(&s->ahead->m);
+    free(s->ahead);
+    s->ahead = NULL;
 }
 
 int stage_written(stage *s, err *e)
 {
-    if (s->beside)
-        pthread_join(s->thread, NULL);
-    s->beside = NULL;
-    if (!s->beside_error.status)
-        return 0;
-    *e = s->beside_error;
+    if (s->ahead) {
+        pthread_join(s->ahead->thread, NULL);
+        free_ahead(s);
+    }
+    return err_join(e, &s->ahead_failed);
+}
+
+bool stage_is_large(const model *m)
+{
+    enum { LARGE = 1 << 22 }; /* bytes: fewer are written in a few milliseconds */
+    int64_t bytes = 0;
+    for (int i = 0; i < m->arrays.count; i++)
+        bytes += m->arrays.v[i].rows * m->arrays.v[i].columns * (int64_t)model_type_size(m->arrays.v[i].type);
+    return bytes >= LARGE;
+}
+
+/* Begins to write the whole, or the first arrays. */
+static int begin_ahead(stage *s, const model *m, bool whole, int arrays, err *e)
+{
+    stage_ahead *a = s->ahead = mem_array(1, sizeof *a, "writing a model", e);
+    if (!a)
+        return -1;
+    a->w = s->writer;
+    a->whole = whole;
+    a->arrays = arrays;
+    a->failed = &s->ahead_failed;
+    if (!model_share(&a->m, m, e)) {
+        const int code = thread_start_quiet(&a->thread, write_some, a);
+        if (!code)
+            return 0;
+        err_system(e, NULL, code, "cannot start a thread");
+    }
+    free_ahead(s);
     return -1;
+}
+
+int stage_write_ahead(stage *s, model *m, bool changes(const model_array *a), err *e)
+{
+    int arrays = 0;
+    if (add_provenance(s, m, e))
+        return -1;
+    while (arrays < m->arrays.count && !changes(&m->arrays.v[arrays]))
+        arrays++;
+    return begin_ahead(s, m, false, arrays, e);
+}
+
+int stage_write_beside(stage *s, model *m, err *e)
+{
+    if (!stage_is_large(m))
+        return stage_write(s, m, e);
+    return add_provenance(s, m, e) ? -1 : begin_ahead(s, m, true, 0, e);
+}
+
+int stage_write(stage *s, model *m, err *e)
+{
+    return stage_written(s, e) || add_provenance(s, m, e) ? -1 : model_write(s->writer, m, e);
 }
 
 /* Those that came before, and were kept for several stages. */
@@ -206,9 +244,7 @@ static void close_failed(stage *s, const tool *t, const err *e)
 
 void stage_close(stage *s, const tool *t, err *e)
 {
-    err unwritten = {0};
-    if (stage_written(s, &unwritten) && !e->status)
-        *e = unwritten;
+    stage_written(s, e);
     /* A model counts only once its end was seen: what is left in the pipe is read, and may yet say `fail`. */
     if (!e->status && s->reader)
         pass_frames(s, NULL, NULL, NULL, e);

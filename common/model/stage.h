@@ -8,7 +8,7 @@
 #include "cli/tool.h"
 #include "model/stream.h"
 
-#include <pthread.h>
+typedef struct stage_ahead stage_ahead;
 
 typedef struct stage {
     const tool *t;
@@ -17,11 +17,11 @@ typedef struct stage {
     bool lines_follow; /* the model on stdin, for the caller to take (live/lines.h); set before stage_read */
     out *sink;
     model_writer *writer;
-    const frame *kept; /* in place of a reader: the frames that came, borrowed */
+    stage_ahead *ahead;  /* a thread that writes, see stage_write_ahead */
+    err ahead_failed;    /* what went wrong there */
+    bool has_provenance; /* the model that is written */
+    const frame *kept;   /* in place of a reader: the frames that came, borrowed */
     int64_t kept_count;
-    const model *beside; /* that a thread writes, until stage_written; NULL: none */
-    pthread_t thread;
-    err beside_error;
 } stage;
 
 /* Opens what the tool has: the output first (-o, --text, -z, from t's options; binary to a terminal is refused), so
@@ -34,13 +34,20 @@ int stage_read(stage *s, model *m, err *e);
 /* Appends the tool's provenance to m and writes it. */
 int stage_write(stage *s, model *m, err *e);
 
-/* The same of a large model on a thread of its own, while the caller goes on. Until stage_written nobody else uses the
- * writer or the sink, m stays as it is, and s stays where it is. What goes wrong in writing comes out of
- * stage_written. */
+/* Whether to write a model takes long enough for a thread of its own. */
+bool stage_is_large(const model *m);
+
+/* Appends the provenance, and begins to write on a thread of its own: all but the arrays, then the first of these, up
+ * to the first that `changes`. So the next tool reads while this one computes. Until stage_write, which writes the
+ * rest, m may only get more arrays, and those that do not change stay as they are. */
+int stage_write_ahead(stage *s, model *m, bool changes(const model_array *a), err *e);
+
+/* The same of a large model as a whole, which stays as it is until stage_written, and s where it is; a small model is
+ * written at once. What goes wrong in writing on the thread comes out of stage_written. */
 int stage_write_beside(stage *s, model *m, err *e);
 
-/* Waits until the model is written: before anything else is written. What closes a stage does so too. Of none, and
- * again: nothing. -1 with e filled, each time, where the model could not be written. */
+/* Waits until what was begun is written: before anything else is. What closes a stage does so too. Of nothing, and
+ * again: nothing. -1 with e filled, each time, where it could not be written. */
 int stage_written(stage *s, err *e);
 
 /* Copies the frames that are left in to out. */

@@ -53,8 +53,10 @@ struct model_writer {
     out *o;
     const encoding *how;
     bool begun;
-    model axes; /* of the body that was written */
-    bool body;
+    model axes;     /* of the body that was written, */
+    bool is_headed; /* once its beginning was */
+    int arrays;     /* of it that were written */
+    bool body;      /* all of it was */
     pattern pattern;
     order order;
 };
@@ -455,9 +457,10 @@ static void write_array(model_writer *w, const model_array *a)
     write_item(w, &(item){.kind = ITEM_ARRAY, .array = *a, .finite = k && values_must_be_finite(k)});
 }
 
-static int check_body(const model *m, err *e)
+/* From the first of the arrays that are still to be written. */
+static int check_body(const model *m, int first, int end, err *e)
 {
-    for (int i = 0; i < m->arrays.count; i++) {
+    for (int i = first; i < end; i++) {
         const model_array *a = &m->arrays.v[i];
         const char *wrong = belongs(a->name, false);
         if (wrong)
@@ -471,9 +474,9 @@ static int check_body(const model *m, err *e)
     return 0;
 }
 
-int model_write(model_writer *w, const model *m, err *e)
+static int write_head(model_writer *w, const model *m, err *e)
 {
-    if (check_body(m, e) || copy_axes(&w->axes, m, e))
+    if (copy_axes(&w->axes, m, e))
         return -1;
     for (int i = 0; i < m->metas; i++)
         write_item(w, &(item){.kind = ITEM_META, .key = m->meta[i].key, .text = m->meta[i].value});
@@ -481,8 +484,26 @@ int model_write(model_writer *w, const model *m, err *e)
         write_item(w, &(item){.kind = ITEM_PROV, .text = m->prov[i]});
     for (int i = 0; i < m->axis_count; i++)
         write_item(w, &(item){.kind = ITEM_AXIS, .key = m->axes[i].name, .number = m->axes[i].count});
-    for (int i = 0; i < m->arrays.count; i++)
-        write_array(w, &m->arrays.v[i]);
+    w->is_headed = true;
+    return 0;
+}
+
+int model_write_ahead(model_writer *w, const model *m, int arrays, err *e)
+{
+    if (w->is_headed && w->axes.axis_count != m->axis_count)
+        return err_set(e, "model", 0, "%d axes; expected the %d that were written already", m->axis_count,
+                       w->axes.axis_count);
+    if (check_body(m, w->arrays, arrays, e) || (!w->is_headed && write_head(w, m, e)))
+        return -1;
+    for (; w->arrays < arrays; w->arrays++)
+        write_array(w, &m->arrays.v[w->arrays]);
+    return 0;
+}
+
+int model_write(model_writer *w, const model *m, err *e)
+{
+    if (model_write_ahead(w, m, m->arrays.count, e))
+        return -1;
     for (int i = 0; i < m->block_count; i++)
         write_item(w, &(item){.kind = ITEM_BLOCK, .block = m->blocks[i]});
     w->body = true;

@@ -45,6 +45,11 @@ void model_writer_close(model_writer *w);
 /* Errors of writing stick in the out and show at out_close. What a reader would refuse is refused
  * here, before a byte of it is written. */
 int model_write(model_writer *w, const model *m, err *e);
+
+/* Writes the body's beginning, all but its arrays and blocks, and its first `arrays` arrays. model_write of the model,
+ * which may have got more arrays after these, then writes the rest: together the same bytes. */
+int model_write_ahead(model_writer *w, const model *m, int arrays, err *e);
+
 int model_write_frame(model_writer *w, const frame *f, err *e);
 int model_write_end(model_writer *w, err *e);
 /* Ends the stream with `fail STATUS "text"`, wherever it stood. A longer text is cut; bytes that are not UTF-8 become

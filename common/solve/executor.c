@@ -2,7 +2,6 @@
 
 #include "base/thread.h"
 
-#include <signal.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
@@ -160,18 +159,14 @@ static void *make_ready(void *argument)
 void executor_ahead_start(executor_ahead *a, const executor *const *table, const char *device,
                           const executor_need *need)
 {
-    sigset_t all, before;
     const executor *of = likely(table, device, need);
     if (!of || !strcmp(of->device, "cpu"))
         return;
-    sigfillset(&all); /* signals are the main thread's */
-    pthread_sigmask(SIG_BLOCK, &all, &before);
     a->of = of;
     sem_init(&a->known, 0, 0);
-    a->waits = !thread_start(&a->thread, make_ready, a);
+    a->waits = !thread_start_quiet(&a->thread, make_ready, a);
     if (!a->waits)
         a->of = NULL; /* executor_choose does it */
-    pthread_sigmask(SIG_SETMASK, &before, NULL);
 }
 
 void executor_ahead_wait(executor_ahead *a)

@@ -1,6 +1,8 @@
 #!/bin/sh
 # attach on a bar of 3 x 1 x 1 voxels of 10 mm written by hand, with a muscle and bones; and on the real face.
 . "$(dirname "$0")/lib.sh"
+# shellcheck source=tests/cli/boxes.sh
+. tests/cli/boxes.sh
 
 # bar GROUP: its first face, a square in the plane x = 2 mm, is in GROUP; a point at the bar's far end is in "Bone_b", and a
 # triangle far away in "rigid_far skin".
@@ -148,6 +150,25 @@ for threads in 1 3; do
     attach -q --fibre field --threads $threads <"$T/bar" >"$T/threads$threads"
 done
 check "the same bytes for any number of threads" cmp "$T/threads1" "$T/threads3"
+# Muscles are laid side by side, but one of more than 32,768 elements by all threads together.
+{
+    box tissue 0 0 0 80 50 30
+    box muscle_much 2 2 2 70 30 28
+    for i in 1 2 3 4 5; do
+        box "muscle_$i" 72 $((9 * i - 4)) 2 78 $((9 * i + 1)) 28
+    done
+    box skull 0 0 -2 80 50 1
+} >"$T/boxes.obj"
+voxelise -q --unit mm -s 1 "$T/boxes.obj" 2>"$T/said" >"$T/boxes"
+is "$(sinew export -f model --text "$T/boxes" | awk '$1 == "array" { on = $2 == "element.volume"; next } on && $1 == 1 { n++ } END { print (n > 32768) }')" \
+    1 "a muscle of many elements"
+for rule in field auto; do
+    for threads in 1 3 16; do
+        attach -q --fibre $rule --threads $threads <"$T/boxes" >"$T/threads$threads"
+    done
+    check "$rule: the same bytes by three threads" cmp "$T/threads1" "$T/threads3"
+    check "and by sixteen" cmp "$T/threads1" "$T/threads16"
+done
 
 attach --report -o "$T/out" <"$T/bar" 2>"$T/stderr"
 is "$(grep -v warning "$T/stderr")" "attach: 3 rigid surfaces
@@ -247,7 +268,6 @@ is "$(grep -c '^frame' "$T/out") $(grep -c '2 frames' "$T/stderr")" "0 1" "are d
 
 
 # A cube, which has no longest axis, and whose elements are held or not.
-. tests/cli/boxes.sh
 for high in 4 18; do
     {
         box skin 0 0 0 40 40 40
@@ -352,6 +372,12 @@ is "$(awk '/^  muscle_/ && $3 == "none" && $4 == 0 && /!$/' "$T/stderr" | wc -l 
 check "along fields" attach --report --fibre field -o "$T/field" <"$T/face"
 is "$(grep -c -e warning -e '!$' "$T/stderr") $(awk '/^  muscle_/ { print $3 }' "$T/stderr" | LC_ALL=C sort | uniq -c | tr -s ' \n' ' ')" \
     "0  32 field 2 field, " "none, for all contract"
+for threads in 1 3 16; do
+    attach --rigid 'skull*,muscle_b*,muscle_z*,skin' --threads $threads --report -o "$T/rigid$threads" <"$T/face" 2>"$T/report$threads"
+done
+check "many rigid surfaces: the same nodes by three threads" cmp "$T/rigid1" "$T/rigid3"
+check "and by sixteen" cmp "$T/rigid1" "$T/rigid16"
+check "and the same counts of what each holds" cmp "$T/report1" "$T/report16"
 check "by default" attach --report -o "$T/all" <"$T/face"
 is "$(grep -c -e warning -e '!$' "$T/stderr") $(awk '/^  muscle_/ { print $3 }' "$T/stderr" | LC_ALL=C sort | uniq -c | tr -s ' \n' ' ')" \
     "0  8 round 26 shape " "all 34 have fibres, the quarters of the sphincter as such"

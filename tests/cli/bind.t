@@ -1,6 +1,8 @@
 #!/bin/sh
 # bind: which element, which weights, which surface, and what it refuses.
 . "$(dirname "$0")/lib.sh"
+# shellcheck source=tests/cli/boxes.sh
+. tests/cli/boxes.sh
 
 model() {
     awk -v nx=2 -v ny=2 -v nz=2 -v h=0.01 "$@" -f tests/cli/lattice.awk
@@ -32,6 +34,22 @@ check "provenance has the file's base name" grep -q '^prov bind [^ ]* "dots.obj"
 sinew bind --text --threads 1 "$T/dots.obj" <"$T/model" >"$T/1"
 sinew bind --text --threads 5 "$T/dots.obj" <"$T/model" >"$T/2"
 check "the same bytes for any number of threads" cmp "$T/1" "$T/2"
+
+# With several threads a large model is written while its surfaces are bound, for the first time and again.
+box skin 0 0 0 50 50 50 >"$T/box.obj"
+voxelise -q --unit mm -s 1 "$T/box.obj" >"$T/large"
+check "a large model" sinew bind -q --threads 1 -o "$T/large.bound" <"$T/large"
+for from in "$T/large" "$T/large.bound"; do
+    for threads in 1 2 5; do
+        sinew bind -q --threads $threads <"$from" >"$T/by$threads"
+    done
+    check "$from: the same bytes for any number of threads" cmp "$T/by1" "$T/by2"
+    check "and for five" cmp "$T/by1" "$T/by5"
+done
+fails 1 "what fails then" "no surface none" sinew bind --name none -o "$T/none" <"$T/large"
+sinew bind --threads 2 --name none <"$T/large" 2>"$T/said" >"$T/cut"
+is "$(sinew info "$T/cut" 2>&1 | grep -c 'failed: bind: the model carries no surface none') $(($(wc -c <"$T/cut") > 1000000))" "1 1" \
+    "is told behind what was written"
 
 # How vertices will move.
 is "$(array "$T/bound" dots/vertex.blended)" "1 1 1 1 1 1 " "vertices move blended"

@@ -28,7 +28,7 @@ static int attach_one(model *m, const double *position, int corners, double stri
     rigid_surface skull = {.name = "skull", .primitives = 1};
     rigid_primitive primitive = {.position = position, .vertex = in_order, .corners = corners};
     rigid r = {.surface = &skull, .primitive = &primitive, .surfaces = 1, .primitives = 1};
-    if (anchor_nodes(m, &r, strictness, NULL, &e))
+    if (anchor_nodes(m, &r, strictness, NULL, NULL, &e))
         ok(false, "attach: %s", e.text);
     return (int)skull.nodes;
 }
@@ -355,7 +355,7 @@ static void several(void)
         primitive[i] = (rigid_primitive){
             .position = at, .vertex = &in_order[each[i].vertex], .corners = 1, .surface = each[i].surface};
     rigid r = {.surface = three, .primitive = primitive, .surfaces = 3, .primitives = 6};
-    ok(!anchor_nodes(&m, &r, .75, NULL, &e), "three surfaces %s", e.text);
+    ok(!anchor_nodes(&m, &r, .75, NULL, NULL, &e), "three surfaces %s", e.text);
     ok(three[0].nodes == 4 && three[1].nodes == 8 && three[2].nodes == 0, "each node once a surface: %d %d %d",
        (int)three[0].nodes, (int)three[1].nodes, (int)three[2].nodes);
     ok(three[0].idle == 1 && three[1].idle == 0 && three[2].idle == 1, "primitives that hold none");
@@ -363,7 +363,7 @@ static void several(void)
     ok(!memcmp(anchor->i32, want, sizeof want), "a node is its first surface's");
     ok(name->rows == 3 && !strcmp(name->str[2], "far"), "the surfaces are named");
     rigid none = {0};
-    ok(!anchor_nodes(&m, &none, .75, NULL, &e) && model_count(&m, "anchor") == 0, "again, with none %s", e.text);
+    ok(!anchor_nodes(&m, &none, .75, NULL, NULL, &e) && model_count(&m, "anchor") == 0, "again, with none %s", e.text);
     int left = 0;
     for (int n = 0; n < 12; n++)
         left += model_find(&m, "node.rigid")->u8[n] || model_find(&m, "node.anchor")->i32[n] != -1;
@@ -443,7 +443,7 @@ static void real_skull(void)
     in *source = in_open(path, &e);
     opt_list pattern = {1, {"skull"}};
     ok(source && !obj_read(&o, source, &e) && !surface_add(&file, "face", &o, .001, &e) &&
-           !rigid_collect(&r, &file, &pattern, &e) && !anchor_nodes(&m, &r, .75, NULL, &e),
+           !rigid_collect(&r, &file, &pattern, &e) && !anchor_nodes(&m, &r, .75, NULL, NULL, &e),
        "a real skull %s", e.text);
     int64_t nodes = model_count(&m, "node"), held = 0, wrong = 0;
     uint8_t *want = calloc((size_t)nodes, 1);

@@ -89,7 +89,7 @@ static void test_nearest(const double *spacing, double share, const char *name)
     nearest n;
     err e = {0};
     int wrong = 0;
-    if (nearest_build(&n, &m, &e))
+    if (nearest_build(&n, &m, NULL, &e))
         ok(false, "builds: %s", e.text);
     for (int i = 0; i < 6000; i++) {
         static const double reaches[4] = {1, 1, 12, 1000};
@@ -121,10 +121,10 @@ static void test_bad_models(void)
     err e = {0};
     model m = make(&l, low, size, taken);
     model_find(&m, "node.position")->f64[0] += 1e-3;
-    ok(nearest_build(&n, &m, &e) && strstr(e.text, "is not the box of its lattice cell"), "refused: %s", e.text);
+    ok(nearest_build(&n, &m, NULL, &e) && strstr(e.text, "is not the box of its lattice cell"), "refused: %s", e.text);
     model_remove(&m, "element.lattice");
     e = (err){0};
-    ok(nearest_build(&n, &m, &e) && strstr(e.text, "element.lattice"), "refused: %s", e.text);
+    ok(nearest_build(&n, &m, NULL, &e) && strstr(e.text, "element.lattice"), "refused: %s", e.text);
     model_free(&m);
 }
 
@@ -168,7 +168,7 @@ static void test_linear(double reach, double tolerance)
     }
     nearest n;
     err e = {0};
-    nearest_build(&n, &m, &e);
+    nearest_build(&n, &m, NULL, &e);
     bound view = {.element = element,
                   .weight = weight,
                   .corners = 8,

@@ -1,7 +1,7 @@
 /* The rules that give fibres, against shapes made from equations: a ring, its halves, a cylinder, a fan; with their
  * surfaces in the model, and without; and directions between drawn lines.
  */
-// needs: attach/muscle.c attach/attachment.c attach/fibre_rule.c attach/fibre_field.c
+// needs: attach/muscle.c attach/muscle_fibres.c attach/attachment.c attach/fibre_rule.c attach/fibre_field.c
 // needs: attach/shape/laplace.c attach/shape/ring.c
 // needs: attach/muscle_shape.c attach/muscle_surface.c attach/shape/line_field.c
 #include "attach/muscle.h"
@@ -9,6 +9,7 @@
 #include "surface/surface.h"
 
 #include "block.h"
+#include "muscles_made.h"
 
 #include <stdlib.h>
 
@@ -230,7 +231,7 @@ static angles lay(const solid *s, double h, bool whole, const char *rule, const 
     make_voxels(&m, s, h);
     if (whole)
         add_surface(&m, s, "muscle_x");
-    const int rc = muscle_make(&m, &asked, p, &list, &warnings, &e);
+    const int rc = muscles_made(&m, &asked, p, &list, &warnings, &e);
     const model_array *said = model_find(&m, "muscle.fibre");
     ok(!rc && (rule ? !said : said && !strcmp(said->str[0], expected)), "the rule is %s: %s", expected,
        said ? said->str[0] : "not stored");
@@ -295,7 +296,7 @@ static void asked(void)
         pool *p = pool_create(1, &e);
         make_voxels(&m, &s, .011);
         add_surface(&m, &s, "muscle_x");
-        const int rc = muscle_make(&m, &values, p, &list, &warnings, &e);
+        const int rc = muscles_made(&m, &values, p, &list, &warnings, &e);
         const model_array *said = model_find(&m, "muscle.fibre");
         ok(!rc && (of[i].rule ? said && !strcmp(said->str[0], of[i].rule) : !said), "--fibre %s: %s %s",
            of[i].values[0], said ? said->str[0] : "not stored", e.text);
@@ -318,7 +319,7 @@ static void named(void)
     make_voxels(&m, &s, .0025);
     add_surface(&m, &s, "Orbicularis_oris_upper");
     model_set_text(model_find(&m, "volume.name"), 1, "orbicularis_oris_upper", &e);
-    ok(!muscle_make(&m, &(opt_list){0}, p, &list, &warnings, &e) && list.of[0].rule == MUSCLE_ROUND &&
+    ok(!muscles_made(&m, &(opt_list){0}, p, &list, &warnings, &e) && list.of[0].rule == MUSCLE_ROUND &&
            !list.of[0].is_ring,
        "an arc of a sphincter, by its name %s", e.text);
     ok(compare(&m, &s).mean < 4, "along its arc");

@@ -1,12 +1,13 @@
 /* Fibres by a potential: in a straight bar exactly along it; in a bent tube made from equations, its own axis; with
  * both ends, one or none attached, whatever the number of threads.
  */
-// needs: attach/muscle.c attach/attachment.c attach/fibre_rule.c attach/fibre_field.c attach/shape/laplace.c
-// needs: attach/shape/ring.c attach/muscle_shape.c attach/muscle_surface.c
+// needs: attach/muscle.c attach/muscle_fibres.c attach/attachment.c attach/fibre_rule.c attach/fibre_field.c
+// needs: attach/shape/laplace.c attach/shape/ring.c attach/muscle_shape.c attach/muscle_surface.c
 #include "attach/muscle.h"
 #include "attach/shape/laplace.h"
 
 #include "block.h"
+#include "muscles_made.h"
 
 #include <stdlib.h>
 
@@ -108,7 +109,7 @@ static void make(model *m, const char *rule, int threads)
     notes warnings = {0};
     muscles list;
     pool *p = pool_create(threads, &e);
-    ok(!muscle_make(m, &(opt_list){1, {rule}}, p, &list, &warnings, &e), "fibres %s", e.text);
+    ok(!muscles_made(m, &(opt_list){1, {rule}}, p, &list, &warnings, &e), "fibres %s", e.text);
     notes_free(&warnings);
     muscles_free(&list);
     pool_destroy(p);
@@ -184,7 +185,7 @@ static void straight(void)
             rigid[node_at(size, 0, j, k)] = k < 2;
         }
     pool *p = pool_create(1, &e);
-    ok(!muscle_make(&m, &(opt_list){1, {"field"}}, p, &list, &warnings, &e), "three pieces %s", e.text);
+    ok(!muscles_made(&m, &(opt_list){1, {"field"}}, p, &list, &warnings, &e), "three pieces %s", e.text);
     const float *f = model_find(&m, "element.fibre")->f32;
     double off[3] = {0};
     for (int32_t i = 0; i < 12 * 9 * 6; i++) {

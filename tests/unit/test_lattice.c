@@ -3,6 +3,7 @@
 
 #include "tap.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 static void set_cells(model *m, const int32_t *ijk, int64_t elements)
@@ -52,7 +53,7 @@ static void find_places(void)
     lattice_map map;
     static const int32_t cells[] = {-2, 5, 0, 3, 5, 1, -2, 6, 1, 0, 5, 0};
     set_cells(&m, cells, 4);
-    ok(!lattice_map_build(&map, &m, &e), "built %s", e.text);
+    ok(!lattice_map_build(&map, &m, NULL, &e), "built %s", e.text);
     int wrong = 0, found = 0;
     for (int k = -2; k < 5; k++)
         for (int j = 3; j < 9; j++)
@@ -68,7 +69,8 @@ static void find_places(void)
     ok(lattice_element(&map, INT64_MAX / 2, 5, 0) == -1, "far away there is none");
     lattice_map_free(&map);
     set_cells(&m, NULL, 0);
-    ok(!lattice_map_build(&map, &m, &e) && lattice_element(&map, 0, 0, 0) == -1, "no elements, no cells %s", e.text);
+    ok(!lattice_map_build(&map, &m, NULL, &e) && lattice_element(&map, 0, 0, 0) == -1, "no elements, no cells %s",
+       e.text);
     lattice_map_free(&map);
     model_free(&m);
 }
@@ -80,7 +82,7 @@ static void find_several(void)
     model m = {0};
     lattice_map map;
     set_cells(&m, (int32_t[]){1, 2, 3, 4, 5, 6, 1, 2, 3, 1, 2, 4, 1, 2, 3}, 5);
-    ok(!lattice_map_build(&map, &m, &e), "built %s", e.text);
+    ok(!lattice_map_build(&map, &m, NULL, &e), "built %s", e.text);
     const int32_t first = lattice_element(&map, 1, 2, 3), second = lattice_next(&map, first);
     ok(first == 0 && second == 2 && lattice_next(&map, second) == 4 && lattice_next(&map, 4) == -1,
        "a cell of three elements gives them in their order");
@@ -88,9 +90,44 @@ static void find_several(void)
        "others have one");
     lattice_map_free(&map);
     set_cells(&m, (int32_t[]){1, 2, 3}, 1);
-    ok(!lattice_map_build(&map, &m, &e) && !map.next && lattice_next(&map, 0) == -1, "without any, no list is kept");
+    ok(!lattice_map_build(&map, &m, NULL, &e) && !map.next && lattice_next(&map, 0) == -1,
+       "without any, no list is kept");
     lattice_map_free(&map);
     model_free(&m);
+}
+
+/* Many elements, by several threads: as one after another, where some cells have several and where none has. */
+static void find_by_threads(void)
+{
+    enum { SIDE = 60, ALL = SIDE * SIDE * SIDE };
+    err e = {0};
+    pool *threads = pool_create(3, &e);
+    int32_t *cells = malloc(sizeof *cells * 3 * ALL);
+    for (int several = 0; cells && several < 2; several++) {
+        model m = {0};
+        lattice_map one, other;
+        int wrong = 0, shared = 0;
+        for (int n = 0; n < ALL; n++) {
+            /* Backwards, and every hundredth in the cell of one far before it. */
+            const int at = several && n % 100 == 99 ? ALL - 1 - n / 2 : ALL - 1 - n;
+            cells[3 * n] = at % SIDE - 7;
+            cells[3 * n + 1] = at / SIDE % SIDE;
+            cells[3 * n + 2] = at / SIDE / SIDE + 11;
+        }
+        set_cells(&m, cells, ALL);
+        ok(!lattice_map_build(&one, &m, NULL, &e) && !lattice_map_build(&other, &m, threads, &e), "built %s", e.text);
+        wrong += memcmp(one.low, other.low, sizeof one.low) || memcmp(one.size, other.size, sizeof one.size);
+        for (int n = 0; n < ALL; n++) {
+            wrong += one.element[n] != other.element[n] || lattice_next(&one, n) != lattice_next(&other, n);
+            shared += lattice_next(&one, n) >= 0;
+        }
+        ok(!wrong && (shared > 1000) == several, "%d cells of several elements: the same by threads", shared);
+        lattice_map_free(&one);
+        lattice_map_free(&other);
+        model_free(&m);
+    }
+    free(cells);
+    pool_destroy(threads);
 }
 
 static void refused(void)
@@ -98,7 +135,7 @@ static void refused(void)
     err e = {0};
     model m = {0};
     lattice_map map;
-    ok(lattice_map_build(&map, &m, &e) && strstr(e.text, "element.lattice"), "no array: %s", e.text);
+    ok(lattice_map_build(&map, &m, NULL, &e) && strstr(e.text, "element.lattice"), "no array: %s", e.text);
     e = (err){0};
     ok(!map.element, "nothing is left");
     static const int32_t wide[][6] = {
@@ -109,7 +146,8 @@ static void refused(void)
     for (int i = 0; i < 3; i++) {
         e = (err){0};
         set_cells(&m, wide[i], 2);
-        ok(lattice_map_build(&map, &m, &e) && strstr(e.text, i < 2 ? "memory" : "one piece"), "too wide: %s", e.text);
+        ok(lattice_map_build(&map, &m, NULL, &e) && strstr(e.text, i < 2 ? "memory" : "one piece"), "too wide: %s",
+           e.text);
     }
     model_free(&m);
 }
@@ -119,6 +157,7 @@ int main(void)
     metadata();
     find_places();
     find_several();
+    find_by_threads();
     refused();
     for (int n = 0; n < 8; n++) /* VTK_HEXAHEDRON: round the bottom, then round the top */
         ok(lattice_vtk[n][0] == (n % 4 == 1 || n % 4 == 2) && lattice_vtk[n][1] == (n % 4 > 1) &&

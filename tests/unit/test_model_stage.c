@@ -15,7 +15,8 @@
 
 struct options {
     opt_common common;
-    bool drop, late; /* drop the frames; fail after the model was written */
+    bool drop, late;   /* drop the frames; fail after the model was written */
+    bool ahead, array; /* write node.rigid ahead, before the axis; add an array after that */
     const char *axis;
 };
 
@@ -26,6 +27,16 @@ static const opt options_table[] = {
      .to = offsetof(struct options, drop),
      .help = "drop the frames"},
     {.group = OPT_RESULT, .name = "late", .kind = OPT_FLAG, .to = offsetof(struct options, late), .help = "fail late"},
+    {.group = OPT_RESULT,
+     .name = "ahead",
+     .kind = OPT_FLAG,
+     .to = offsetof(struct options, ahead),
+     .help = "write ahead"},
+    {.group = OPT_RESULT,
+     .name = "array",
+     .kind = OPT_FLAG,
+     .to = offsetof(struct options, array),
+     .help = "add an array"},
     {.group = OPT_RESULT,
      .name = "axis",
      .arg = "NAME",
@@ -48,8 +59,21 @@ static const opt_tool looker_table = {.name = "looker",
                                       .operands = "",
                                       .options = options_table};
 
+static bool is_user(const model_array *a)
+{
+    return a->name[0] == 'x';
+}
+
 static int work(stage *s, model *m, const struct options *o, notes *warnings, err *e)
 {
+    if (o->ahead && stage_write_ahead(s, m, is_user, e))
+        return -1;
+    if (o->array) {
+        model_array *a = model_add_as(m, "x-late", MODEL_U8, "1", "node", 1, e);
+        if (!a)
+            return -1;
+        a->u8[0] = 9;
+    }
     if (o->axis && model_axis_add(m, o->axis, 1, e))
         return -1;
     if (!s->writer)
@@ -230,6 +254,25 @@ static void test_failures(void)
        "nothing on stdin");
 }
 
+/* Part of a model on a thread of its own: the bytes are the same. */
+static void test_ahead(void)
+{
+    result r = run("--text --ahead --array", HEAD BODY FRAME "end\n");
+    ok(gives(&r, 0,
+             HEAD "prov filter " SINEW_VERSION " \"--ahead --array\"\n" BODY CRC
+                  "array x-late u8 1 node 1\n9\ncrc e4b37a37\n" FRAME FCRC "end\n",
+             ""),
+       "an array is added while those before it are written");
+    r = run("--text --ahead --late", HEAD BODY "end\n");
+    ok(r.status == 1 && strstr(r.out, CRC "fail 1 \"filter: too late\""), "a failure later");
+    r = run("--text --ahead --axis x-b", HEAD BODY "end\n");
+    ok(gives(&r, 1,
+             HEAD "prov filter " SINEW_VERSION " \"--ahead --axis x-b\"\n" BODY CRC
+                  "fail 1 \"filter: model: 2 axes; expected the 1 that were written already\"\n",
+             "filter: model: 2 axes; expected the 1 that were written already\n"),
+       "an axis that comes too late is refused: %s", r.out);
+}
+
 /* A reader is not done before the end was seen: what comes late still counts. */
 static void test_looker(void)
 {
@@ -357,6 +400,7 @@ int main(void)
     test_beside();
     test_copies();
     test_failures();
+    test_ahead();
     test_looker();
     test_files();
     test_terminals();

@@ -70,7 +70,7 @@ static void make(block *k, const int32_t *size, int32_t slit, const bool *taken)
         }
         i++;
     }
-    nearest_build(&k->n, &k->m, &e);
+    nearest_build(&k->n, &k->m, NULL, &e);
     k->u = calloc((size_t)(3 * k->nodes), sizeof *k->u);
     k->b = (bound){.element = k->element,
                    .weight = k->weight,

@@ -1,6 +1,6 @@
 /* Contraction centres, fibres and axes against sums done by hand; and which surfaces are rigid, by name.
  */
-// needs: attach/rigid.c attach/muscle.c attach/attachment.c attach/fibre_rule.c
+// needs: attach/rigid.c attach/muscle.c attach/muscle_fibres.c attach/attachment.c attach/fibre_rule.c
 // needs: attach/fibre_field.c attach/shape/laplace.c
 // needs: attach/shape/ring.c attach/muscle_shape.c attach/muscle_surface.c
 #include "attach/muscle.h"
@@ -8,6 +8,7 @@
 #include "surface/surface.h"
 
 #include "block.h"
+#include "muscles_made.h"
 
 #include <stdlib.h>
 
@@ -42,7 +43,7 @@ static void centres(void)
             "00000"
             "11000"
             "00000");
-    ok(!muscle_make(&m, &(opt_list){1, {"centre"}}, NULL, &list, &warnings, &e) && list.count == 2, "two muscles %s",
+    ok(!muscles_made(&m, &(opt_list){1, {"centre"}}, NULL, &list, &warnings, &e) && list.count == 2, "two muscles %s",
        e.text);
     const double *centre = model_find(&m, "muscle.centre")->f64;
     near_(centre[0], .005, 1e-15, "contraction centre x: each node once");
@@ -76,7 +77,7 @@ static void at_the_centre(void)
             "11011"
             "11011"
             "11011");
-    ok(!muscle_make(&m, &(opt_list){1, {"centre"}}, NULL, &list, &warnings, &e), "all corners rigid %s", e.text);
+    ok(!muscles_made(&m, &(opt_list){1, {"centre"}}, NULL, &list, &warnings, &e), "all corners rigid %s", e.text);
     ok(fibre(&m, 0)[0] == -1 && fibre(&m, 0)[1] == 0 && fibre(&m, 1)[0] == -1, "the axis, toward the centre");
     ok(fibre(&m, 3)[0] == 0, "one element alone has no axis");
     ok(warnings.count == 1 && strstr(warnings.line[0], "muscle_b has no node that is free: it will not contract"), "%s",
@@ -94,7 +95,7 @@ static void axis(const char *fixed, float x, int said, const char *what)
     muscles list;
     model m;
     bar(&m, fixed);
-    ok(!muscle_make(&m, &(opt_list){1, {"axis"}}, NULL, &list, &warnings, &e), "--fibre axis %s", e.text);
+    ok(!muscles_made(&m, &(opt_list){1, {"axis"}}, NULL, &list, &warnings, &e), "--fibre axis %s", e.text);
     ok(fibre(&m, 0)[0] == x && fibre(&m, 1)[0] == x && fibre(&m, 1)[1] == 0, "%s", what);
     ok(warnings.count == said && strstr(warnings.line[0], "muscle_b has no axis"), "%d warnings", said);
     notes_free(&warnings);
@@ -124,7 +125,7 @@ static void slanted_axis(void)
         model_find(&m, "element.volume")->i32[((8 - i) * 9 + i) * 9 + i] = 2;
     model_add(&m, "node.rigid", &e);
     model_find(&m, "node.rigid")->u8[node_at(size, 0, 0, 9)] = 1;
-    ok(!muscle_make(&m, &(opt_list){1, {"axis"}}, NULL, &list, &warnings, &e) && list.count == 1,
+    ok(!muscles_made(&m, &(opt_list){1, {"axis"}}, NULL, &list, &warnings, &e) && list.count == 1,
        "nine voxels in a row %s", e.text);
     near_(list.of[0].axis[0], -1. / 3, 1e-12, "axis x");
     near_(list.of[0].axis[1], -2. / 3, 1e-12, "axis y");
@@ -147,7 +148,7 @@ static void mixed(void)
     bar(&m, "10001000000000000000");
     memcpy(model_add(&m, "element.mix", &e)->i32, mix, sizeof mix);
     memcpy(model_add(&m, "element.mixture", &e)->f32, share, sizeof share);
-    ok(!muscle_make(&m, &(opt_list){1, {"axis"}}, NULL, &list, &warnings, &e), "elements mixed of two volumes %s",
+    ok(!muscles_made(&m, &(opt_list){1, {"axis"}}, NULL, &list, &warnings, &e), "elements mixed of two volumes %s",
        e.text);
     ok(list.of[0].elements == 4 && list.of[1].elements == 1, "of the second volume too");
     near_(list.of[0].weight, 1 + .75 + .25 + .5, 1e-12, "its shares");
@@ -164,7 +165,7 @@ static void mixed(void)
     notes_free(&warnings);
     muscles_free(&list);
     model_find(&m, "element.mix")->i32[3] = 2;
-    ok(muscle_make(&m, &(opt_list){1, {"axis"}}, NULL, &list, &warnings, &e) &&
+    ok(muscles_made(&m, &(opt_list){1, {"axis"}}, NULL, &list, &warnings, &e) &&
            strstr(e.text, "element.mix, row 3 repeats the volume of the element"),
        "%s", e.text);
     notes_free(&warnings);

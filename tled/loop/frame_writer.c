@@ -4,7 +4,6 @@
 #include "base/thread.h"
 
 #include <pthread.h>
-#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -88,18 +87,14 @@ static void *work(void *context)
     return NULL;
 }
 
-/* Starts the threads; signals are the main thread's, as with the pool's. 0 or errno's code. */
+/* Starts the threads. 0 or errno's code. */
 static int start(frame_writer *w)
 {
-    sigset_t all, before;
     int code = 0;
-    sigfillset(&all);
-    pthread_sigmask(SIG_BLOCK, &all, &before);
     while (!code && w->running < 2) {
-        code = thread_start(&w->thread[w->running], work, &w->stage[w->running]);
+        code = thread_start_quiet(&w->thread[w->running], work, &w->stage[w->running]);
         w->running += !code;
     }
-    pthread_sigmask(SIG_SETMASK, &before, NULL);
     return code;
 }
 
