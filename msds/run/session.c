@@ -129,15 +129,26 @@ static int start_from(session *s, const frame *last, err *e)
     return s->skin.vertices ? skin_model_start(&s->skin, last, e) : 0;
 }
 
+/* What frames have of the probe, or of where one would be. */
+static int offer_probe(session *s, err *e)
+{
+    static const char *const names[] = {"probe.pose", "probe.force", "probe.torque"};
+    const struct options *o = s->o;
+    const int none = o->probe || o->live || o->replay ? 0 : FRAME_CHOICE_EMPTY;
+    s->frames.empty = "--probe too, or other arrays";
+    for (int i = 0; i < 3; i++)
+        if (frame_choice_offer(&s->frames, names[i], none | (i || o->poses ? 0 : FRAME_CHOICE_PERHAPS), e))
+            return -1;
+    return 0;
+}
+
 /* What frames can have, and what --frames chooses of it. */
 static int choose_frames(session *s, err *e)
 {
-    static const char *const names[] = {"node.displacement", "node.velocity", "probe.pose", "probe.force",
-                                        "probe.torque"};
     frame_choice *c = &s->frames;
-    for (size_t i = 0; i < sizeof names / sizeof *names; i++)
-        if (frame_choice_offer(c, names[i], 0, e))
-            return -1;
+    if (frame_choice_offer(c, "node.displacement", 0, e) || frame_choice_offer(c, "node.velocity", 0, e) ||
+        offer_probe(s, e))
+        return -1;
     if (s->skin.vertices && skin_model_offer(&s->skin, c, e))
         return -1;
     return frame_choice_offer_bound(c, &s->m, e) || frame_choice_read(c, &s->o->frames, e) ? -1 : 0;
@@ -149,8 +160,9 @@ static int take_frames(session *s, err *e)
     frame last = {0};
     const int64_t count = stage_last_frame(&s->stage, &s->m, true, &last, e);
     const int failed =
-        count > 0 && (start_from(s, &last, e) || frame_choice_fits(&s->frames, &last, in_name(s->stage.source), e)) ? -1
-                                                                                                                    : 0;
+        count > 0 && (start_from(s, &last, e) || frame_choice_follow(&s->frames, &last, in_name(s->stage.source), e))
+            ? -1
+            : 0;
     frame_free(&last);
     return count < 0 ? -1 : failed;
 }
