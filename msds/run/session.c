@@ -154,15 +154,22 @@ static int choose_frames(session *s, err *e)
     return frame_choice_offer_bound(c, &s->m, e) || frame_choice_read(c, &s->o->frames, e) ? -1 : 0;
 }
 
+/* Of a record it is told first whether it is one of this model at all. */
+static int follow(session *s, const frame *last, err *e)
+{
+    const char *where = in_name(s->stage.source);
+    if (!s->o->replay)
+        return frame_choice_follow(&s->frames, last, where, e);
+    frame_choice_follow(&s->frames, last, where, &s->unfit);
+    return 0;
+}
+
 /* Passes on the frames that came, and starts from the last. */
 static int take_frames(session *s, err *e)
 {
     frame last = {0};
     const int64_t count = stage_last_frame(&s->stage, &s->m, true, &last, e);
-    const int failed =
-        count > 0 && (start_from(s, &last, e) || frame_choice_follow(&s->frames, &last, in_name(s->stage.source), e))
-            ? -1
-            : 0;
+    const int failed = count > 0 && (start_from(s, &last, e) || follow(s, &last, e)) ? -1 : 0;
     frame_free(&last);
     return count < 0 ? -1 : failed;
 }

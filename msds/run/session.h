@@ -61,6 +61,7 @@ typedef struct session {
     msds_state *state;
     frame_queue *queue;  /* of frames on their way out */
     frame_choice frames; /* the arrays that they have */
+    err unfit;           /* of a replay: why its frames cannot follow those that came */
     inverted inverted;
     openness openness;
     compare *other;       /* the other method, or NULL */
