@@ -208,6 +208,12 @@ bool frame_choice_has(const frame_choice *c, const char *name)
     return a && a->wanted;
 }
 
+bool frame_choice_narrow(const frame_choice *c, const char *name)
+{
+    const frame_array *a = find(c, name);
+    return a && a->wanted && a->narrow;
+}
+
 bool frame_choice_has_of(const frame_choice *c, const char *beginning)
 {
     for (int64_t i = 0; i < c->arrays; i++)
@@ -264,6 +270,27 @@ static void move_work(void *context, int64_t chunk, int64_t from, int64_t to)
         bone_displacement(&s->carried, &s->moves, v, s->to + 3 * v);
 }
 
+/* The nodes of an element. */
+static void mark_element(const bound *b, int64_t element, uint8_t *node)
+{
+    for (int c = 0; c < b->corners; c++)
+        node[b->node[b->corners * element + c]] = 1;
+}
+
+void frame_choice_mark(const frame_choice *c, uint8_t *node)
+{
+    for (int64_t i = 0; i < c->surfaces; i++) {
+        const struct frame_surface *s = &c->surface[i];
+        for (int64_t v = 0; v < s->b.shape.vertices; v++) {
+            mark_element(&s->b, s->b.element[v], node);
+            if (s->carried.node[v] >= 0)
+                node[s->carried.node[v]] = 1;
+        }
+        for (int64_t k = 0; k < s->moves.entries; k++)
+            mark_element(&s->b, s->moves.element[k], node);
+    }
+}
+
 int frame_choice_add_surfaces(const frame_choice *c, frame *f, const model *m, const double *displacement,
                               pool *threads, err *e)
 {
@@ -295,7 +322,7 @@ void frame_choice_take(const frame_choice *c, frame *f)
         frame_remove_all(f, is_dropped, c);
     for (int i = 0; i < f->arrays.count && (c->is_given || c->follows); i++) {
         const frame_array *is = find(c, f->arrays.v[i].name);
-        f->arrays.v[i].narrow = is && is->narrow;
+        f->arrays.v[i].narrow = is && is->narrow && f->arrays.v[i].type == MODEL_F64;
     }
 }
 

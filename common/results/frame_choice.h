@@ -45,8 +45,10 @@ int frame_choice_offer_bound(frame_choice *c, const model *m, err *e);
 /* Chooses by a list of NAME[:f32|:f64]: names of arrays, or words for several. Status 2 where one is wrong. */
 int frame_choice_read(frame_choice *c, const opt_list *list, err *e);
 
-/* Whether frames have the array; and whether they have one whose name begins so. */
+/* Whether frames have the array; whether they have it as f32, in place of f64; and whether they have one whose name
+ * begins so. */
 bool frame_choice_has(const frame_choice *c, const char *name);
+bool frame_choice_narrow(const frame_choice *c, const char *name);
 bool frame_choice_has_of(const frame_choice *c, const char *beginning);
 
 /* Gets ready to move the bound surfaces that are wanted, once the model has all its arrays. */
@@ -55,8 +57,11 @@ int frame_choice_open(frame_choice *c, const model *m, err *e);
 /* Whether bound surfaces are wanted, for which a frame needs body.pose, where there are bodies. */
 bool frame_choice_moves(const frame_choice *c);
 
-/* Adds the bound surfaces to a frame of m, as sinew deform moves them; displacement: nodes x 3, m. threads: may be
- * NULL. */
+/* Sets to 1 those of `node` (nodes) whose displacement moves the bound surfaces that are wanted, once they are open. */
+void frame_choice_mark(const frame_choice *c, uint8_t *node);
+
+/* Adds the bound surfaces to a frame of m, as sinew deform moves them; displacement: nodes x 3, m, of which those that
+ * frame_choice_mark tells are read. threads: may be NULL. */
 int frame_choice_add_surfaces(const frame_choice *c, frame *f, const model *m, const double *displacement,
                               pool *threads, err *e);
 
