@@ -175,10 +175,10 @@ static int take_frames(session *s, err *e)
 }
 
 /* Flushed, as a frame is to be seen when it is there. */
-static int put_frame(void *context, const frame *f, err *e)
+static int put_frame(void *context, frame *f, err *e)
 {
-    const session *s = context;
-    const int failed = model_write_frame(s->stage.writer, f, e);
+    session *s = context;
+    const int failed = frame_nodes_end(&s->of_nodes, f, true, e) || model_write_frame(s->stage.writer, f, e) ? -1 : 0;
     out_flush(s->stage.sink);
     return failed;
 }
@@ -193,10 +193,14 @@ int session_finish(session *s, err *e)
 int session_start(session *s, err *e)
 {
     if (take_frames(s, e) || frame_choice_open(&s->frames, &s->m, e) || press_bones(&s->press, &s->m, e) ||
-        inverted_make(&s->inverted, &s->problem, s->threads, e) || openness_make(&s->openness, &s->problem, e))
+        openness_make(&s->openness, &s->problem, e))
         return -1;
+    s->inverted = (inverted){.p = &s->problem, .threads = s->threads};
     s->state = s->device->create(&s->problem, s->threads, e);
     if (!s->state)
+        return -1;
+    s->of_nodes = (frame_nodes){.device = s->device, .state = s->state};
+    if (frame_nodes_make(&s->of_nodes, &s->problem, &s->frames, &s->m, s->threads, e))
         return -1;
     if (s->o->compare) {
         s->other = compare_make(&s->problem, s->device, s->threads, e);
@@ -373,6 +377,7 @@ void session_free(session *s)
     compare_free(s->other, s->device);
     if (s->state)
         s->device->destroy(s->state);
+    frame_nodes_free(&s->of_nodes);
     frame_choice_free(&s->frames);
     inverted_free(&s->inverted);
     openness_free(&s->openness);

@@ -12,6 +12,7 @@
 #include "msds/problem/problem.h"
 #include "msds/run/cavities.h"
 #include "msds/run/compare.h"
+#include "msds/run/frame_nodes.h"
 #include "msds/run/inverted.h"
 #include "msds/run/methods.h"
 #include "msds/run/openness.h"
@@ -62,6 +63,7 @@ typedef struct session {
     frame_queue *queue;  /* of frames on their way out */
     frame_choice frames; /* the arrays that they have */
     err unfit;           /* of a replay: why its frames cannot follow those that came */
+    frame_nodes of_nodes;
     inverted inverted;
     openness openness;
     compare *other;       /* the other method, or NULL */
