@@ -104,7 +104,7 @@ static int make_streams(card_frames *f, err *e)
         if (CUDA_TRY(cudaEventCreateWithFlags(&s.ready, cudaEventDisableTiming)) ||
             CUDA_TRY(cudaEventCreateWithFlags(&s.arrived, cudaEventDisableTiming)))
             return -1;
-    return 0;
+    return CUDA_TRY(cudaDeviceSynchronize()); /* the lists are there before any stream reads them */
 }
 
 int card_frames_make(card_frames *f, const msds_frames *of, const msds_problem *p, const sell *order, err *e)
