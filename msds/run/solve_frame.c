@@ -1,5 +1,6 @@
 #include "msds/run/solve_frame.h"
 
+#include "base/clock.h"
 #include "msds/run/frame_report.h"
 
 #include <math.h>
@@ -186,5 +187,15 @@ int solve_frame_write(session *s, const frame_input *from, err *e)
 
 int solve_frame(session *s, const frame_input *from, err *e)
 {
-    return solve_frame_solve(s, from, e) || solve_frame_write(s, from, e) ? -1 : 0;
+    const double start = clock_now();
+    if (solve_frame_solve(s, from, e))
+        return -1;
+    const double solved = clock_now() - start;
+    if (solve_frame_write(s, from, e))
+        return -1;
+    if (s->posed == 1)
+        s->first_done = clock_now();
+    else
+        s->solving += solved;
+    return 0;
 }
