@@ -396,6 +396,7 @@ static void set_run(session *s, const struct options *o)
     s->run.every = o->every > 0 ? o->every : 0;
     s->run.context = s;
     s->run.frame = tled_frame_write;
+    s->run.last = tled_frame_last;
     s->run.checked = checked;
     s->run.cut = say_cut;
     s->run.refined = words_refined;
