@@ -1,7 +1,6 @@
-/* Frames of msds-run on their way from the card: a kernel puts what frames take of a state into the model's order, as it
- * stands there in single or double precision, between two frames of the solver; it is copied to the host in a stream of
- * its own while the next is solved. Beside that, inverted tetrahedra are counted where they are. The executor's state
- * owns it; it borrows the order of the nodes.
+/* Frames of msds-run on their way from the card: a kernel puts what frames take of a state into the model's order, in
+ * the state's precision, between two frames of the solver; it is copied to the host in a stream of its own while the
+ * next is solved. Beside that, inverted tetrahedra are counted where they are. The executor's state owns it.
  *
  *     slot   | displacement of `count` nodes, x y z each | velocity of all nodes, x y z each |
  */

@@ -74,8 +74,8 @@ typedef struct msds_executor {
     int (*reset)(msds_state *state, err *e);
     /* Copies one of the state's arrays out. */
     int (*get)(msds_state *state, int what, double *to, err *e);
-    /* Gets ready for frames, once; from then on monitor counts inverted tetrahedra. `of` is only read here. NULL, as are
-     * the next two: frames are made of what get gives. */
+    /* Gets ready for frames, once; from then on monitor counts inverted tetrahedra. `of` is only read here. NULL, as
+     * are the next two: frames are made of what get gives. */
     int (*frames)(msds_state *state, const msds_frames *of, err *e);
     /* Puts what frames take of the state into a slot, to be fetched while the state goes on. */
     int (*snapshot)(msds_state *state, int slot, err *e);

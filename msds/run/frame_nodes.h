@@ -35,8 +35,8 @@ void frame_nodes_free(frame_nodes *n);
 /* Begins a frame of the state as it is: the arrays of nodes come first. */
 int frame_nodes_begin(frame_nodes *n, frame *f, err *e);
 
-/* The displacement of all nodes in the frame that was begun last, x 3, m. Where the device has snapshots, this waits for
- * it, and it is for what is seldom asked. NULL with e filled. */
+/* The displacement of all nodes in the frame that was begun last, x 3, m. Where the device has snapshots, this waits
+ * for it, and it is for what is seldom asked. NULL with e filled. */
 const double *frame_nodes_displacement(frame_nodes *n, const frame *f, err *e);
 
 /* Adds bound surfaces, behind all other arrays, and keeps what is wanted: who sends (writes false), before the frame is

@@ -32,7 +32,7 @@ $(BUILD)/emulate/tled/cuda/march.o: tled/cuda/march.c
 	@mkdir -p $(@D)
 	$(call run,CC $<,$(CC) $(ALL_CFLAGS) -DMARCH_SPARSE=1e9 -Dmarch_near_find=near_find_tried -c -o $@ $<)
 
-EMULATE_MSDS := $(EMULATE_CARD) $(addprefix $(BUILD)/emulate/,msds/cuda/cuda_frames.o tests/emulate/frames.o)
+EMULATE_MSDS := $(EMULATE_CARD) $(addprefix $(BUILD)/emulate/,msds/cuda/cuda_frames.o tests/emulate/emulated_frames.o)
 
 # Elsewhere they are unit tests as others are, and skip.
 EMULATED := $(if $(EMULATE_CXX),$(addprefix tests/unit/test_,tled_emulated msds_emulated))

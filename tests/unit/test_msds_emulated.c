@@ -8,7 +8,7 @@
 #include "base/mem.h"
 #include "msds/problem/simplex.h"
 #include "tests/emulate/emulate.h"
-#include "tests/emulate/frames.h"
+#include "tests/emulate/emulated_frames.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,5 +1,5 @@
-/* What is folded, with the energies of elements or without them: the same bits, for elements, mixed ones and parts, from
- * slight displacements to such as turn elements inside out, whichever element was the worst before.
+/* What is folded, with the energies of elements or without them: the same bits, for elements, mixed ones and parts,
+ * from slight displacements to such as turn elements inside out, whichever element was the worst before.
  */
 // needs: tled/*/*.c
 #include "tled/loop/strained.h"

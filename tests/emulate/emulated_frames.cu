@@ -3,7 +3,7 @@
 #include "solve/card_layout.cuh"
 
 extern "C" {
-#include "tests/emulate/frames.h"
+#include "tests/emulate/emulated_frames.h"
 }
 
 struct emulated_frames {
