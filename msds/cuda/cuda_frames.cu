@@ -107,20 +107,6 @@ static int make_streams(card_frames *f, err *e)
     return CUDA_TRY(cudaDeviceSynchronize()); /* the lists are there before any stream reads them */
 }
 
-int card_frames_make(card_frames *f, const msds_frames *of, const msds_problem *p, const sell *order, err *e)
-{
-    host_lists h = {};
-    f->of = *of;
-    f->nodes = p->nodes;
-    f->elements = p->elements;
-    f->count = of->displacement ? p->nodes : of->count;
-    const int failed = fill_lists(f, p, order, &h, e) || put_lists(f, order, &h, e) || make_streams(f, e) ? -1 : 0;
-    f->of.node = NULL; /* the caller's */
-    free(h.some);
-    free(h.corner);
-    return failed;
-}
-
 void card_frames_free(card_frames *f)
 {
     if (f->sending)
@@ -175,6 +161,22 @@ static int make_room(card_sent *s, int64_t bytes, int64_t step, err *e)
         return -1;
     s->room = bytes;
     return 0;
+}
+
+int card_frames_make(card_frames *f, const msds_frames *of, const msds_problem *p, const sell *order, err *e)
+{
+    host_lists h = {};
+    f->of = *of;
+    f->nodes = p->nodes;
+    f->elements = p->elements;
+    f->count = of->displacement ? p->nodes : of->count;
+    int failed = fill_lists(f, p, order, &h, e) || put_lists(f, order, &h, e) || make_streams(f, e) ? -1 : 0;
+    for (int i = 0; i < MSDS_SLOTS && !failed; i++)
+        failed = make_room(&f->slot[i], sent_bytes(f, false), -1, e);
+    f->of.node = NULL; /* the caller's */
+    free(h.some);
+    free(h.corner);
+    return failed;
 }
 
 template <class T>
