@@ -184,14 +184,14 @@ static int put_frame(void *context, frame *f, err *e)
     return failed;
 }
 
-int session_finish(session *s, err *e)
+int session_finish(session *s, bool ended, err *e)
 {
     frame_queue *q = s->queue;
     const double each = (double)(s->posed - 1);
     s->queue = NULL;
     if (frame_queue_close(q, e))
         return -1;
-    if (!e->status && !s->o->live && !s->o->replay && s->posed > 1)
+    if (ended && !s->o->live && !s->o->replay && s->posed > 1)
         tool_detail(s->t, "a frame took %.4g ms, of which the solver %.4g ms, in the mean of the %.0f after the first",
                     1e3 * (clock_now() - s->first_done) / each, 1e3 * s->solving / each, each);
     return 0;

@@ -110,8 +110,9 @@ int session_provenance(const session *s, tool *t, err *e);
 /* Passes on the frames that came, starts from the last, and makes the state. */
 int session_start(session *s, err *e);
 
-/* Waits until all frames are written, and tells (-v) how long they took. -1 with e filled where one could not be. */
-int session_finish(session *s, err *e);
+/* Waits until all frames are written, and tells (-v) how long they took, where the run has ended well. -1 with e filled
+ * where one could not be. */
+int session_finish(session *s, bool ended, err *e);
 
 /* Takes over the options, of which some of one part have changed, from the next frame on. */
 int session_change(session *s, session_part part, err *e);
