@@ -33,7 +33,8 @@ JOBS = $(if $(findstring -j,$(MAKEFLAGS)),,-j$(shell nproc 2>/dev/null || echo 2
 # ---- test programs: the library, and the objects that a line `// needs: a/b.c c/d.c` in the source names.
 UNIT_SRC := $(wildcard tests/unit/test_*.c)
 FUZZ_SRC := $(wildcard tests/fuzz/fuzz_*.c)
-UNIT := $(filter-out $(UNIT_TEST)tled_emulated,$(UNIT_SRC:%.c=$(BUILD)/%))
+ON_EMULATED = $(UNIT_TEST)tled_emulated $(UNIT_TEST)msds_emulated
+UNIT := $(filter-out $(ON_EMULATED),$(UNIT_SRC:%.c=$(BUILD)/%))
 FUZZ := $(FUZZ_SRC:%.c=$(BUILD)/%)
 # Each fuzz target with a plain main, which tries the inputs that it is given: no libFuzzer, any compiler.
 REPLAY := $(FUZZ_SRC:tests/fuzz/fuzz_%.c=$(BUILD)/tests/fuzz/replay_%)
@@ -143,8 +144,8 @@ soak:
 unit: $(UNIT) $(COMPARE) $(FAULTS)
 
 # CUDA's kernels on a card that the processor plays: apart, since g++ takes a minute or two to compile them for it.
-check-emulated: $(UNIT_TEST)tled_emulated
-	$(ENVIRONMENT) $(PROVE) $<
+check-emulated: $(ON_EMULATED)
+	$(ENVIRONMENT) $(PROVE) $^
 
 # ---- the tests, as TAP under prove; V=1 shows every line
 PROVE = prove $(if $(V),-v) $(or $(JOBS),-j2)
@@ -159,8 +160,8 @@ check-unit: unit
 check-cli: all $(COMPARE) $(FAULTS)
 	$(ENVIRONMENT) $(PROVE) $(CLI)
 
-# EMULATED_TOO=yes: check-emulated's program with them, which takes one processor for as long as many of these take the other.
-check-tests: all unit $(if $(EMULATED_TOO),$(UNIT_TEST)tled_emulated)
+# EMULATED_TOO=yes: check-emulated's programs with them, of which tled's takes one processor for as long as many of these take the other.
+check-tests: all unit $(if $(EMULATED_TOO),$(ON_EMULATED))
 	$(ENVIRONMENT) $(PROVE) $(filter-out unit all,$^) $(UNIT) $(CLI)
 
 check-slow: all unit

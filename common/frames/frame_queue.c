@@ -30,7 +30,7 @@ static void *work(void *context)
             pthread_cond_wait(&q->changed, &q->lock);
         if (q->written == q->sent)
             break;
-        const frame *f = &q->frame[q->written % FRAMES];
+        frame *f = &q->frame[q->written % FRAMES];
         const bool whole = !q->e.status;
         pthread_mutex_unlock(&q->lock);
         err e = {0};

@@ -9,8 +9,9 @@
 
 typedef struct frame_queue frame_queue;
 
-/* Writes a frame; -1 with e filled. It is called for one frame at a time, in the order in which they are sent. */
-typedef int frame_queue_write(void *context, const frame *f, err *e);
+/* Writes a frame, whose arrays it may first make; -1 with e filled. It is called for one frame at a time, in the order
+ * in which they are sent. */
+typedef int frame_queue_write(void *context, frame *f, err *e);
 
 /* at_once: without a thread, so that a frame is out when it has been sent (live runs). NULL with e filled. */
 frame_queue *frame_queue_open(frame_queue_write *write, void *context, bool at_once, err *e);

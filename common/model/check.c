@@ -64,13 +64,19 @@ static int64_t row_line(const site *s, int64_t row)
     return s->line > 0 ? s->line + 1 + row : 0;
 }
 
+/* Who writes a frame may have floats of what is f64: they are stored as f32, as what is narrow is. */
+static bool has_type(const model_array *a, const known *k)
+{
+    return a->type == k->type || (k->flags & KNOWN_FRAME && k->type == MODEL_F64 && a->type == MODEL_F32);
+}
+
 static int check_known(const site *s, const known *k)
 {
     const model_array *a = s->a;
     char unit[MODEL_NAME], axis[MODEL_NAME];
     known_expand(k->unit, a->name, unit, sizeof unit);
     known_expand(k->axis, a->name, axis, sizeof axis);
-    if (a->type != k->type)
+    if (!has_type(a, k))
         return err_set(s->e, s->where, s->line, "array %s has type %s; expected %s", a->name, model_type_name(a->type),
                        model_type_name(k->type));
     if (strcmp(a->unit, unit))

@@ -374,6 +374,12 @@ model_array *frame_lend(frame *f, const model *m, const char *name, const char *
     return add(&f->arrays, m, name, MODEL_F64, unit, axis, columns, numbers, e);
 }
 
+void model_array_lend(model_array *a, model_type type, const void *numbers)
+{
+    a->type = type;
+    memcpy(&a->data, &numbers, sizeof numbers); /* not const there, but only read */
+}
+
 model_array *model_add_as(model *m, const char *name, model_type type, const char *unit, const char *axis,
                           int32_t columns, err *e)
 {

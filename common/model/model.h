@@ -114,6 +114,9 @@ model_array *frame_add(frame *f, const model *m, const char *name, err *e);
  * is. */
 model_array *frame_lend(frame *f, const model *m, const char *name, const char *unit, const char *axis, int32_t columns,
                         const double *numbers, err *e);
+/* Lets an array that was lent be of other numbers, as many: of f64, or of f32. A frame of these is for writing alone:
+ * what is known as f64 is then stored as f32, like what is narrow. */
+void model_array_lend(model_array *a, model_type type, const void *numbers);
 /* Adds a zeroed array of any kind. */
 model_array *model_add_as(model *m, const char *name, model_type type, const char *unit, const char *axis,
                           int32_t columns, err *e);

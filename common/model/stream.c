@@ -94,7 +94,7 @@ static int pattern_set(pattern *p, const model_arrays *arrays, err *e)
 static bool pattern_fits(const pattern *p, int i, const model_array *a)
 {
     const model_array *b = i < p->count ? &p->v[i] : NULL;
-    return b && a->type == b->type && a->narrow == b->narrow && a->columns == b->columns && !strcmp(a->name, b->name) &&
+    return b && model_stored(a) == model_stored(b) && a->columns == b->columns && !strcmp(a->name, b->name) &&
            !strcmp(a->unit, b->unit) && !strcmp(a->axis, b->axis);
 }
 

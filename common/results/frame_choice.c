@@ -109,18 +109,24 @@ static void list_one(char to[LIST], const char *name)
         snprintf(to + n, LIST - n, "%s%s", n ? ", " : "", name);
 }
 
+static bool is_named(const frame_array *a)
+{
+    return !(a->flags & FRAME_CHOICE_EMPTY);
+}
+
 /* Lists what --frames can name: first the words that stand for arrays here, then the arrays. */
 static void list_offered(const frame_choice *c, char to[LIST])
 {
     to[0] = 0;
     for (int w = 0; w < WORDS; w++)
         for (int64_t i = 0; i < c->arrays; i++)
-            if (is_of_word(c->array[i].name, w)) {
+            if (is_named(&c->array[i]) && is_of_word(c->array[i].name, w)) {
                 list_one(to, words[w].word);
                 break;
             }
     for (int64_t i = 0; i < c->arrays; i++)
-        list_one(to, c->array[i].name);
+        if (is_named(&c->array[i]))
+            list_one(to, c->array[i].name);
 }
 
 static int unknown(const frame_choice *c, const char *item, err *e)
@@ -159,6 +165,9 @@ static int read_item(frame_choice *c, char *item, err *e)
         if (!is_meant(c->array[i].name, item))
             continue;
         any = true;
+        if (!is_named(&c->array[i]))
+            return err_option(e, "--frames", "'%.80s': %s says nothing here; expected %s", item, c->array[i].name,
+                              c->empty);
         if (choose(&c->array[i], type, e))
             return -1;
     }
@@ -197,6 +206,12 @@ bool frame_choice_has(const frame_choice *c, const char *name)
 {
     const frame_array *a = find(c, name);
     return a && a->wanted;
+}
+
+bool frame_choice_narrow(const frame_choice *c, const char *name)
+{
+    const frame_array *a = find(c, name);
+    return a && a->wanted && a->narrow;
 }
 
 bool frame_choice_has_of(const frame_choice *c, const char *beginning)
@@ -255,6 +270,27 @@ static void move_work(void *context, int64_t chunk, int64_t from, int64_t to)
         bone_displacement(&s->carried, &s->moves, v, s->to + 3 * v);
 }
 
+/* The nodes of an element. */
+static void mark_element(const bound *b, int64_t element, uint8_t *node)
+{
+    for (int c = 0; c < b->corners; c++)
+        node[b->node[b->corners * element + c]] = 1;
+}
+
+void frame_choice_mark(const frame_choice *c, uint8_t *node)
+{
+    for (int64_t i = 0; i < c->surfaces; i++) {
+        const struct frame_surface *s = &c->surface[i];
+        for (int64_t v = 0; v < s->b.shape.vertices; v++) {
+            mark_element(&s->b, s->b.element[v], node);
+            if (s->carried.node[v] >= 0)
+                node[s->carried.node[v]] = 1;
+        }
+        for (int64_t k = 0; k < s->moves.entries; k++)
+            mark_element(&s->b, s->moves.element[k], node);
+    }
+}
+
 int frame_choice_add_surfaces(const frame_choice *c, frame *f, const model *m, const double *displacement,
                               pool *threads, err *e)
 {
@@ -282,29 +318,72 @@ static bool is_dropped(const model_array *a, const void *context)
 
 void frame_choice_take(const frame_choice *c, frame *f)
 {
-    if (!c->is_given)
-        return;
-    frame_remove_all(f, is_dropped, c);
-    for (int i = 0; i < f->arrays.count; i++) {
+    if (c->is_given)
+        frame_remove_all(f, is_dropped, c);
+    for (int i = 0; i < f->arrays.count && (c->is_given || c->follows); i++) {
         const frame_array *is = find(c, f->arrays.v[i].name);
-        f->arrays.v[i].narrow = is && is->narrow;
+        f->arrays.v[i].narrow = is && is->narrow && f->arrays.v[i].type == MODEL_F64;
     }
 }
 
-int frame_choice_fits(const frame_choice *c, const frame *before, const char *where, err *e)
+/* ---- frames behind others */
+
+/* Lists the arrays of a frame, as --frames names them. */
+static void list_had(const frame *f, char to[LIST])
 {
-    for (int64_t i = 0; i < c->arrays && c->is_given; i++) {
-        const frame_array *is = &c->array[i];
-        const model_array *a = frame_find(before, is->name);
-        if (!a && !is->wanted)
-            continue;
-        if (!a || !is->wanted || a->narrow != is->narrow)
-            return err_set(e, where, 0, "its frames have %s%s, and those to come %s%s; expected the same --frames",
-                           a ? "" : "no ", is->name, is->wanted ? "have it" : "have not",
-                           !a || !is->wanted ? ""
-                           : is->narrow      ? " as f32"
-                                             : " as f64");
+    char item[MODEL_NAME + 4];
+    to[0] = 0;
+    for (int i = 0; i < f->arrays.count; i++) {
+        const model_array *a = &f->arrays.v[i];
+        snprintf(item, sizeof item, "%s%s", a->name, a->narrow ? ":f32" : "");
+        list_one(to, item);
     }
+}
+
+static int differs(const frame_choice *c, const frame *before, const char *name, bool had, const char *where, err *e)
+{
+    char all[LIST];
+    list_had(before, all);
+    return err_set(e, where, 0, "its frames have %s%s, and those to come have %s; expected %s%s", had ? "" : "no ",
+                   name, had ? "not" : "it", c->is_given ? "the same --frames: " : "--frames ", all);
+}
+
+/* An array that is not offered cannot be in a frame to come. */
+static int follow_old(const frame_choice *c, const frame *before, const char *where, err *e)
+{
+    for (int i = 0; i < before->arrays.count; i++) {
+        const char *name = before->arrays.v[i].name;
+        if (!find(c, name))
+            return err_set(e, where, 0,
+                           "its frames have %s, which frames of this run cannot have; expected a model without frames, "
+                           "or the options that they were made with",
+                           name);
+    }
+    return 0;
+}
+
+static int follow_type(const frame_choice *c, frame_array *is, const model_array *had, const char *where, err *e)
+{
+    if (c->is_given && is->narrow != had->narrow)
+        return err_set(e, where, 0, "its frames have %s as %s, and those to come as %s; expected the same --frames",
+                       is->name, had->narrow ? "f32" : "f64", is->narrow ? "f32" : "f64");
+    is->narrow = had->narrow;
+    return 0;
+}
+
+int frame_choice_follow(frame_choice *c, const frame *before, const char *where, err *e)
+{
+    if (follow_old(c, before, where, e))
+        return -1;
+    for (int64_t i = 0; i < c->arrays; i++) {
+        frame_array *is = &c->array[i];
+        const model_array *had = frame_find(before, is->name);
+        if (!had != !is->wanted && !(is->flags & FRAME_CHOICE_PERHAPS))
+            return differs(c, before, is->name, had != NULL, where, e);
+        if (had && follow_type(c, is, had, where, e))
+            return -1;
+    }
+    c->follows = true;
     return 0;
 }
 

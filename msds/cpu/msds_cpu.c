@@ -465,7 +465,7 @@ static int cpu_monitor(cpu_state *s, msds_reading *reading, err *e)
 {
     double square = 0;
     (void)e;
-    *reading = (msds_reading){.residual = NAN, .solves = s->solves, .finite = true, .met = s->met};
+    *reading = (msds_reading){.residual = NAN, .solves = s->solves, .finite = true, .met = s->met, .inverted = -1};
     reading->contacts = contacts_sum(&s->contacts, reading->force);
     if (s->plan.touched)
         contacts_twist(&s->contacts, &s->w, s->p, s->precise ? s->place : NULL, reading->torque);

@@ -3,6 +3,7 @@
 #include "solve/card_layout.cuh"
 
 #include "msds/cuda/cuda_exact.cuh"
+#include "msds/cuda/cuda_frames.cuh"
 #include "msds/cuda/cuda_newton.cuh"
 #include "msds/cuda/cuda_planes.cuh"
 #include "msds/problem/newton.h"
@@ -31,7 +32,9 @@ struct msds_state {
     char *memory, *fem, *exact, *tets; /* of the card; tets: of the method tissue */
     card_planes planes;
     int64_t bytes, fem_bytes, exact_bytes, tets_bytes;
-    void *staging;           /* pinned: nodes x float4, or x 3 doubles */
+    card_frames frames;
+    bool framed;             /* these are ready */
+    void *staging;           /* pinned: nodes x float4, or x 3 doubles; made when first wanted */
     tissue_outcome *outcome; /* pinned */
     bool precise;            /* t.precise is the state; else t.u */
     int64_t step;
@@ -167,7 +170,6 @@ static int fill(cuda_state *s, err *e)
     s->precise = true;
     return put_problem(s, e) || CUDA_TRY(cudaStreamCreateWithFlags(&s->stream, cudaStreamNonBlocking)) ||
                    CUDA_TRY(cudaMallocHost((void **)&s->outcome, sizeof *s->outcome)) ||
-                   CUDA_TRY(cudaMallocHost(&s->staging, (size_t)s->order.nodes * 3 * sizeof(double))) ||
                    CUDA_TRY(cudaDeviceSynchronize())
                ? -1
                : 0;
@@ -179,6 +181,7 @@ static void cuda_destroy(cuda_state *s)
         return;
     if (s->stream)
         cudaStreamSynchronize(s->stream);
+    card_frames_free(&s->frames);
     cudaFreeHost(s->staging);
     cudaFreeHost(s->outcome);
     card_give(s->memory);
@@ -423,20 +426,49 @@ static int cuda_ready(cuda_state *s, const msds_plan *plan, err *e)
     return plan->method == MSDS_TISSUE && make_newton(s, e) ? -1 : 1;
 }
 
+/* ---- what comes out of it */
+
+static card_fields fields_of(const cuda_state *s)
+{
+    return {s->t.u, s->t.v, s->precise ? s->t.precise : NULL, s->t.position};
+}
+
 static int cuda_monitor(cuda_state *s, msds_reading *reading, err *e)
 {
-    if (CUDA_TRY(cudaMemcpyAsync(s->outcome, s->t.outcome, sizeof *s->outcome, cudaMemcpyDeviceToHost, s->stream)) ||
+    const card_fields now = fields_of(s);
+    if ((s->framed && card_frames_count(&s->frames, &now, s->stream, s->step, e)) ||
+        CUDA_TRY(cudaMemcpyAsync(s->outcome, s->t.outcome, sizeof *s->outcome, cudaMemcpyDeviceToHost, s->stream)) ||
         CUDA_TRY(cudaStreamSynchronize(s->stream)))
         return -1;
     *reading = s->outcome->reading;
+    reading->inverted = s->framed ? (int64_t)*s->frames.told : -1;
     if (s->outcome->failed)
         return err_set(e, NULL, 0, "after %d solves the residual is still %.3g, or contact not settled; expected %.3g",
                        s->outcome->reading.solves, s->outcome->reading.residual, exact_tolerance);
     return 0;
 }
 
-static int fetch(cuda_state *s, const void *from, size_t bytes, err *e)
+static int cuda_frames(cuda_state *s, const msds_frames *of, err *e)
 {
+    s->framed = !card_frames_make(&s->frames, of, s->p, &s->order, e);
+    return s->framed ? 0 : -1;
+}
+
+static int cuda_snapshot(cuda_state *s, int slot, err *e)
+{
+    const card_fields now = fields_of(s);
+    return card_frames_send(&s->frames, &now, slot, s->stream, s->step, e);
+}
+
+static int cuda_fetch(cuda_state *s, int slot, msds_values *to, err *e)
+{
+    return card_frames_wait(&s->frames, slot, to, e);
+}
+
+static int bring(cuda_state *s, const void *from, size_t bytes, err *e)
+{
+    if (!s->staging && CUDA_TRY(cudaMallocHost(&s->staging, (size_t)s->order.nodes * 3 * sizeof(double))))
+        return -1;
     return CUDA_TRY(cudaMemcpyAsync(s->staging, from, bytes, cudaMemcpyDeviceToHost, s->stream)) ||
                    CUDA_TRY(cudaStreamSynchronize(s->stream))
                ? -1
@@ -448,7 +480,7 @@ static int cuda_get(cuda_state *s, int what, double *to, err *e)
     const size_t nodes = (size_t)s->order.nodes;
     const bool precise = what == MSDS_DISPLACEMENT && s->precise;
     const float4 *single = what == MSDS_DISPLACEMENT ? s->t.u : s->t.v;
-    if (precise ? fetch(s, s->t.precise, 3 * nodes * sizeof(double), e) : fetch(s, single, nodes * sizeof(float4), e))
+    if (precise ? bring(s, s->t.precise, 3 * nodes * sizeof(double), e) : bring(s, single, nodes * sizeof(float4), e))
         return -1;
     for (int64_t n = 0; n < s->p->nodes; n++) {
         const int32_t own = s->order.own_node[n];
@@ -463,7 +495,7 @@ static int cuda_get(cuda_state *s, int what, double *to, err *e)
 
 static int64_t cuda_bytes(const cuda_state *s)
 {
-    int64_t bytes = s->bytes;
+    int64_t bytes = s->bytes + card_frames_bytes(&s->frames);
     if (s->fem)
         bytes += s->fem_bytes;
     if (s->exact)
@@ -483,5 +515,8 @@ const msds_executor msds_cuda = {
     .change = cuda_change,
     .reset = cuda_reset,
     .get = cuda_get,
+    .frames = cuda_frames,
+    .snapshot = cuda_snapshot,
+    .fetch = cuda_fetch,
     .monitor = cuda_monitor,
     .bytes = cuda_bytes};

@@ -1,8 +1,9 @@
 /* The contract of msds-run's executors: one state serves every method and carries displacement and velocity from one
  * to the next. A caller owns the state that create gives, until destroy; it borrows the problem and the threads. A
- * state is used by one thread at a time.
+ * state is used by one thread at a time, except by fetch.
  *
- * step may return before the device is done: what went wrong then comes out of a later call. get and monitor wait.
+ * step and snapshot may return before the device is done: what went wrong then comes out of a later call. get, monitor
+ * and fetch wait.
  */
 #ifndef SINEW_MSDS_EXECUTOR_H
 #define SINEW_MSDS_EXECUTOR_H
@@ -14,6 +15,23 @@
 
 /* What get() gives, nodes x 3 doubles each: m, m/s. */
 enum { MSDS_DISPLACEMENT, MSDS_VELOCITY };
+
+/* Frames that may be on their way at once. */
+enum { MSDS_SLOTS = 2 };
+
+/* What the frames of a run take of its state. */
+typedef struct msds_frames {
+    bool displacement, velocity; /* of all nodes */
+    const int32_t *node;         /* count: without `displacement`, the nodes whose displacement they take */
+    int64_t count;
+} msds_frames;
+
+/* What a frame took, x 3, m and m/s, in the order of the model or of msds_frames.node; the state's, until its slot is
+ * taken again. */
+typedef struct msds_values {
+    const float *displacement, *velocity; /* NULL: not taken */
+    const double *precise;                /* in place of displacement, after exact frames */
+} msds_values;
 
 typedef struct msds_state msds_state; /* each executor's own */
 
@@ -56,6 +74,13 @@ typedef struct msds_executor {
     int (*reset)(msds_state *state, err *e);
     /* Copies one of the state's arrays out. */
     int (*get)(msds_state *state, int what, double *to, err *e);
+    /* Gets ready for frames, once; from then on monitor counts inverted tetrahedra. `of` is only read here. NULL, as
+     * are the next two: frames are made of what get gives. */
+    int (*frames)(msds_state *state, const msds_frames *of, err *e);
+    /* Puts what frames take of the state into a slot, to be fetched while the state goes on. */
+    int (*snapshot)(msds_state *state, int slot, err *e);
+    /* Waits for a slot, in any thread. */
+    int (*fetch)(msds_state *state, int slot, msds_values *to, err *e);
     /* What the last step led to. */
     int (*monitor)(msds_state *state, msds_reading *reading, err *e);
     /* What the tangent at the probe is made of (msds/tangent), as the last step left it, until the next; NULL: a device

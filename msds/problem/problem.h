@@ -85,6 +85,7 @@ typedef struct msds_reading {
     double residual;  /* |external - internal forces| over the largest of |external|, |internal| and a force that is
                        * slight for the tissue; or nan */
     double largest;   /* m: the largest displacement */
+    int64_t inverted; /* tetrahedra of no volume, or less; -1: not counted */
     int solves;       /* that an exact frame took */
     bool finite;
     bool met; /* the probe has pressed a node in some step since the state was made */

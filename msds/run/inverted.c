@@ -7,11 +7,13 @@
 
 enum { NODE_CHUNK = 4096, ELEMENT_CHUNK = 2048 };
 
-int inverted_make(inverted *v, const msds_problem *p, pool *threads, err *e)
+/* What only counting here takes. */
+static int make_room(inverted *v, err *e)
 {
-    *v = (inverted){.p = p, .threads = threads};
-    v->place = mem_array(p->nodes, 3 * sizeof *v->place, "the frames", e);
-    v->sum = v->place ? mem_array(pool_chunks(p->elements, ELEMENT_CHUNK), sizeof *v->sum, "the frames", e) : NULL;
+    if (!v->place)
+        v->place = mem_array(v->p->nodes, 3 * sizeof *v->place, "the frames", e);
+    if (v->place && !v->sum)
+        v->sum = mem_array(pool_chunks(v->p->elements, ELEMENT_CHUNK), sizeof *v->sum, "the frames", e);
     return v->sum ? 0 : -1;
 }
 
@@ -44,19 +46,28 @@ static void count_work(void *context, int64_t chunk, int64_t from, int64_t to)
     v->sum[chunk] = count;
 }
 
-void inverted_count(inverted *v, const double *u, double time)
+void inverted_add(inverted *v, int64_t count, double time)
 {
+    v->now = count;
+    v->frames += count > 0;
+    if (count > v->most) {
+        v->most = count;
+        v->most_time = time;
+    }
+}
+
+int inverted_count(inverted *v, const double *u, double time, err *e)
+{
+    int64_t count = 0;
+    if (make_room(v, e))
+        return -1;
     v->u = u;
     pool_run(v->threads, v->p->nodes, NODE_CHUNK, place_work, v);
     pool_run(v->threads, v->p->elements, ELEMENT_CHUNK, count_work, v);
-    v->now = 0;
     for (int64_t i = 0; i < pool_chunks(v->p->elements, ELEMENT_CHUNK); i++)
-        v->now += v->sum[i];
-    v->frames += v->now > 0;
-    if (v->now > v->most) {
-        v->most = v->now;
-        v->most_time = time;
-    }
+        count += v->sum[i];
+    inverted_add(v, count, time);
+    return 0;
 }
 
 void inverted_warn(const inverted *v, int64_t frames, const char *method, notes *warnings)

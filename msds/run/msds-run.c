@@ -128,8 +128,7 @@ static int run_tool(int argc, char **argv)
         goto out;
     progress_start(&s.progress, run_options_table.name, "poses", 0, o.common.quiet);
     s.listener = (msds_listener){frame_report_work, &s};
-    run(&s, &e);
-    session_finish(&s, &e);
+    session_finish(&s, !run(&s, &e), &e);
 out:
     progress_stop(&s.progress);
     tool_warn(&t, &s.warnings);

@@ -150,7 +150,7 @@ int msds_record_replay(session *s, err *e)
     if (!r)
         return -1;
     s->source = s->o->replay;
-    const int failed = replay_lines(s, r, e);
+    const int failed = err_join(e, &s->unfit) || replay_lines(s, r, e) ? -1 : 0;
     replay_close(r);
     return failed;
 }

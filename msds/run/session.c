@@ -1,5 +1,6 @@
 #include "msds/run/session.h"
 
+#include "base/clock.h"
 #include "probe/probe_carry.h"
 #include "surface/scale.h"
 
@@ -129,18 +130,39 @@ static int start_from(session *s, const frame *last, err *e)
     return s->skin.vertices ? skin_model_start(&s->skin, last, e) : 0;
 }
 
+/* What frames have of the probe, or of where one would be. */
+static int offer_probe(session *s, err *e)
+{
+    static const char *const names[] = {"probe.pose", "probe.force", "probe.torque"};
+    const struct options *o = s->o;
+    const int none = o->probe || o->live || o->replay ? 0 : FRAME_CHOICE_EMPTY;
+    s->frames.empty = "--probe too, or other arrays";
+    for (int i = 0; i < 3; i++)
+        if (frame_choice_offer(&s->frames, names[i], none | (i || o->poses ? 0 : FRAME_CHOICE_PERHAPS), e))
+            return -1;
+    return 0;
+}
+
 /* What frames can have, and what --frames chooses of it. */
 static int choose_frames(session *s, err *e)
 {
-    static const char *const names[] = {"node.displacement", "node.velocity", "probe.pose", "probe.force",
-                                        "probe.torque"};
     frame_choice *c = &s->frames;
-    for (size_t i = 0; i < sizeof names / sizeof *names; i++)
-        if (frame_choice_offer(c, names[i], 0, e))
-            return -1;
+    if (frame_choice_offer(c, "node.displacement", 0, e) || frame_choice_offer(c, "node.velocity", 0, e) ||
+        offer_probe(s, e))
+        return -1;
     if (s->skin.vertices && skin_model_offer(&s->skin, c, e))
         return -1;
     return frame_choice_offer_bound(c, &s->m, e) || frame_choice_read(c, &s->o->frames, e) ? -1 : 0;
+}
+
+/* Of a record it is told first whether it is one of this model at all. */
+static int follow(session *s, const frame *last, err *e)
+{
+    const char *where = in_name(s->stage.source);
+    if (!s->o->replay)
+        return frame_choice_follow(&s->frames, last, where, e);
+    frame_choice_follow(&s->frames, last, where, &s->unfit);
+    return 0;
 }
 
 /* Passes on the frames that came, and starts from the last. */
@@ -148,36 +170,44 @@ static int take_frames(session *s, err *e)
 {
     frame last = {0};
     const int64_t count = stage_last_frame(&s->stage, &s->m, true, &last, e);
-    const int failed =
-        count > 0 && (start_from(s, &last, e) || frame_choice_fits(&s->frames, &last, in_name(s->stage.source), e)) ? -1
-                                                                                                                    : 0;
+    const int failed = count > 0 && (start_from(s, &last, e) || follow(s, &last, e)) ? -1 : 0;
     frame_free(&last);
     return count < 0 ? -1 : failed;
 }
 
 /* Flushed, as a frame is to be seen when it is there. */
-static int put_frame(void *context, const frame *f, err *e)
+static int put_frame(void *context, frame *f, err *e)
 {
-    const session *s = context;
-    const int failed = model_write_frame(s->stage.writer, f, e);
+    session *s = context;
+    const int failed = frame_nodes_end(&s->of_nodes, f, true, e) || model_write_frame(s->stage.writer, f, e) ? -1 : 0;
     out_flush(s->stage.sink);
     return failed;
 }
 
-int session_finish(session *s, err *e)
+int session_finish(session *s, bool ended, err *e)
 {
     frame_queue *q = s->queue;
+    const double each = (double)(s->posed - 1);
     s->queue = NULL;
-    return frame_queue_close(q, e);
+    if (frame_queue_close(q, e))
+        return -1;
+    if (ended && !s->o->live && !s->o->replay && s->posed > 1)
+        tool_detail(s->t, "a frame took %.4g ms, of which the solver %.4g ms, in the mean of the %.0f after the first",
+                    1e3 * (clock_now() - s->first_done) / each, 1e3 * s->solving / each, each);
+    return 0;
 }
 
 int session_start(session *s, err *e)
 {
     if (take_frames(s, e) || frame_choice_open(&s->frames, &s->m, e) || press_bones(&s->press, &s->m, e) ||
-        inverted_make(&s->inverted, &s->problem, s->threads, e) || openness_make(&s->openness, &s->problem, e))
+        openness_make(&s->openness, &s->problem, e))
         return -1;
+    s->inverted = (inverted){.p = &s->problem, .threads = s->threads};
     s->state = s->device->create(&s->problem, s->threads, e);
     if (!s->state)
+        return -1;
+    s->of_nodes = (frame_nodes){.device = s->device, .state = s->state};
+    if (frame_nodes_make(&s->of_nodes, &s->problem, &s->frames, &s->m, s->threads, e))
         return -1;
     if (s->o->compare) {
         s->other = compare_make(&s->problem, s->device, s->threads, e);
@@ -354,6 +384,7 @@ void session_free(session *s)
     compare_free(s->other, s->device);
     if (s->state)
         s->device->destroy(s->state);
+    frame_nodes_free(&s->of_nodes);
     frame_choice_free(&s->frames);
     inverted_free(&s->inverted);
     openness_free(&s->openness);

@@ -12,6 +12,7 @@
 #include "msds/problem/problem.h"
 #include "msds/run/cavities.h"
 #include "msds/run/compare.h"
+#include "msds/run/frame_nodes.h"
 #include "msds/run/inverted.h"
 #include "msds/run/methods.h"
 #include "msds/run/openness.h"
@@ -61,6 +62,8 @@ typedef struct session {
     msds_state *state;
     frame_queue *queue;  /* of frames on their way out */
     frame_choice frames; /* the arrays that they have */
+    err unfit;           /* of a replay: why its frames cannot follow those that came */
+    frame_nodes of_nodes;
     inverted inverted;
     openness openness;
     compare *other;       /* the other method, or NULL */
@@ -77,9 +80,11 @@ typedef struct session {
     int64_t next_frame;
     progress progress;
     msds_listener listener;
-    int64_t posed;  /* frames made */
-    double time;    /* s: of the last, or of the last that the model came with */
-    double elapsed; /* s: between the last two; 0 for the first */
+    int64_t posed;     /* frames made */
+    double time;       /* s: of the last, or of the last that the model came with */
+    double elapsed;    /* s: between the last two; 0 for the first */
+    double first_done; /* s, by clock_now: when the first frame was solved and sent, which makes what a method needs */
+    double solving;    /* s, by the clock: to solve the frames after it */
     peak moved, pushed;
     bool pressed; /* some node, in some frame */
     bool dented;  /* the skin */
@@ -105,8 +110,9 @@ int session_provenance(const session *s, tool *t, err *e);
 /* Passes on the frames that came, starts from the last, and makes the state. */
 int session_start(session *s, err *e);
 
-/* Waits until all frames are written. -1 with e filled where one could not be. */
-int session_finish(session *s, err *e);
+/* Waits until all frames are written, and tells (-v) how long they took, where the run has ended well. -1 with e filled
+ * where one could not be. */
+int session_finish(session *s, bool ended, err *e);
 
 /* Takes over the options, of which some of one part have changed, from the next frame on. */
 int session_change(session *s, session_part part, err *e);

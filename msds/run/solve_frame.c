@@ -1,5 +1,6 @@
 #include "msds/run/solve_frame.h"
 
+#include "base/clock.h"
 #include "msds/run/frame_report.h"
 
 #include <math.h>
@@ -26,30 +27,32 @@ static int put_probe(const session *s, frame *f, const frame_input *from, err *e
                : 0;
 }
 
-/* Fills a frame from the state, so that the state may go on while the frame is written. */
+/* What the table and the warnings say of the tetrahedra. */
+static int look_at(session *s, const frame *f, err *e)
+{
+    if (s->reading.inverted >= 0) {
+        inverted_add(&s->inverted, s->reading.inverted, f->time);
+        return 0;
+    }
+    const double *u = frame_nodes_displacement(&s->of_nodes, f, e);
+    if (!u || inverted_count(&s->inverted, u, f->time, e))
+        return -1;
+    openness_measure(&s->openness, u, f->time);
+    return 0;
+}
+
+/* Takes a frame of the state, so that the state may go on while the frame is written. */
 static int fill_frame(session *s, const frame_input *from, frame *f, err *e)
 {
     if (!from->has_pose)
         frame_free(f); /* an earlier frame in it may have had a pose */
     f->index = s->next_frame++;
     f->time = from->time;
-    model_array *u = frame_queue_array(f, &s->m, "node.displacement", e);
-    if (!u || s->device->get(s->state, MSDS_DISPLACEMENT, u->f64, e))
-        return -1;
-    inverted_count(&s->inverted, u->f64, from->time);
-    openness_measure(&s->openness, u->f64, from->time);
-    if (frame_choice_has(&s->frames, "node.velocity")) {
-        model_array *v = frame_queue_array(f, &s->m, "node.velocity", e);
-        if (!v || s->device->get(s->state, MSDS_VELOCITY, v->f64, e))
-            return -1;
-    }
-    if (put_probe(s, f, from, e) || (s->skin.vertices && skin_model_put(&s->skin, f, &s->m, e)))
-        return -1;
-    u = frame_find(f, "node.displacement"); /* it moves as arrays are added */
-    if (frame_choice_add_surfaces(&s->frames, f, &s->m, u->f64, s->threads, e))
-        return -1;
-    frame_choice_take(&s->frames, f);
-    return 0;
+    return frame_nodes_begin(&s->of_nodes, f, e) || look_at(s, f, e) || put_probe(s, f, from, e) ||
+                   (s->skin.vertices && skin_model_put(&s->skin, f, &s->m, e)) ||
+                   frame_nodes_end(&s->of_nodes, f, false, e)
+               ? -1
+               : 0;
 }
 
 static int write_frame(session *s, const frame_input *from, err *e)
@@ -167,7 +170,7 @@ int solve_frame_rest(session *s, const frame_input *from, err *e)
     begin(s, from);
     press_wait(&s->press, &f, &s->moves);
     press_reset(&s->press);
-    s->reading = (msds_reading){.residual = NAN, .finite = true};
+    s->reading = (msds_reading){.residual = NAN, .finite = true, .inverted = -1};
     if (s->skin.vertices && skin_reset(&s->skin, e))
         return -1;
     return s->device->reset(s->state, e);
@@ -184,5 +187,15 @@ int solve_frame_write(session *s, const frame_input *from, err *e)
 
 int solve_frame(session *s, const frame_input *from, err *e)
 {
-    return solve_frame_solve(s, from, e) || solve_frame_write(s, from, e) ? -1 : 0;
+    const double start = clock_now();
+    if (solve_frame_solve(s, from, e))
+        return -1;
+    const double solved = clock_now() - start;
+    if (solve_frame_write(s, from, e))
+        return -1;
+    if (s->posed == 1)
+        s->first_done = clock_now();
+    else
+        s->solving += solved;
+    return 0;
 }

@@ -1,6 +1,7 @@
 """jobs.py BIN THREADS ROUNDS FACE.obj FOLDER cpu|cuda MM...: whole pipes from surfaces to a moving face, by stage, as CSV: voxelise, attach, bind, tled-run for .5 s of
 model at nu .45 with both zygomatics at .1, and sinew deform; then all of them in one pipe. A stage reads a file and writes one. And a block of 524,288 nodes
-(of 8,192 on the CPU) under a probe by msds-run; FRAMES: what the newer tools are given as --frames. OLD=FOLDER of tools: those are run by turns with these, and each row has
+(of 8,192 on the CPU) under a probe by msds-run; FRAMES: what the newer tools are given as --frames. Then frames by what is asked for, of the newer tools
+alone: of the block, as msds-run tells them (-v), beside the solver; and of the face, model's seconds a second, from a run of 2 s more. OLD=FOLDER of tools: those are run by turns with these, and each row has
 the ratio of this round's times, which says more than seconds where a processor is shared. PRECISION: double or single [single].
 Beside them, limits of the machine: the model of each size through a pipe, and to the disk; on a card, its context alone. Peak memory is at least that of a
 Python that is about to become the tool, 12 MiB."""
@@ -87,6 +88,7 @@ def to_disk(path, copy):
 class Bench:
     def __init__(self, versions, rounds, folder):
         self.versions, self.rounds, self.folder = versions, rounds, folder
+        self.of_frames = []  # rows for the end
 
     def path(self, name):
         return os.path.join(self.folder, name)
@@ -112,6 +114,12 @@ class Bench:
             print("# %s at %s: the bytes of %s differ between the versions" % (pipe_name, size, stage), flush=True)
         return self.path(stage + "-new")
 
+    def frames_row(self, pipe_name, size, device, what, frame, solver, rate, bytes_out):
+        """ms a frame and of the solver in it, how many times the solver's time that is; or the model's seconds a second; bytes of a frame."""
+        times = "%.3g" % (frame / solver) if solver else ""
+        numbers = ["%.4g" % x if x != "" else "" for x in (frame, solver, rate)]
+        self.of_frames.append("%s,%s,%s,\"%s\",%s,%s,%s,%s,%.0f" % (pipe_name, size, device, what, numbers[0], numbers[1], times, numbers[2], bytes_out))
+
     def limit(self, pipe_name, size, device, stage, run):
         self.row(pipe_name, size, device, stage, "machine", [run() for _ in range(self.rounds)], [], 0, "")
 
@@ -127,15 +135,76 @@ def face_stages(tools, face, side, device, threads, precision):
 
 
 def bench_face(bench, face, side, device, threads, precision):
-    source, size = os.devnull, side + "mm"
+    """The model, with all that the run needs."""
+    source, size, model = os.devnull, side + "mm", None
     for i, (stage, _) in enumerate(face_stages("", face, side, device, threads, precision)):
         source = bench.compare("face", size, device, stage, lambda tools, target, i=i, source=source: job(
             face_stages(tools, face, side, device, threads, precision)[i][1], source, target))
         if stage == "bind":
+            model = source
             bench.limit("face", size, device, "copy by a pipe", lambda model=source: pipe([["cat", model], ["cat"]], bench.path("copy"))[0])
             bench.limit("face", size, device, "copy to disk", lambda model=source: to_disk(model, bench.path("copy")))
     bench.compare("face", size, device, "whole", lambda tools, target: pipe(
         [command for _, command in face_stages(tools, face, side, device, threads, precision)], target))
+    return model
+
+
+def bench_face_frames(bench, model, size_of, device, threads, precision):
+    """Bound surfaces at 60 frames a second: how many of the model's seconds a run goes on by in one of the clock's."""
+    tools = bench.versions[-1][1]
+    out = bench.path("frames")
+
+    def seconds(level, until):
+        muscles = MUSCLES.replace("=.1", "=" + level)
+        return job([tools + "/tled-run", "-q", "--threads", threads, "-d", device, "--precision", precision, "-m", "tissue.nu=0.45", "-c", muscles,
+                    "--every", "0.0166666667", "-t", until, "--frames", "surfaces:f32"], model, out)[0]
+
+    for level in ".1", ".2":
+        rates = []
+        for _ in range(bench.rounds):
+            short = seconds(level, ".5")
+            size = os.path.getsize(out)
+            rates.append(2 / (seconds(level, "2.5") - short))
+        size = (os.path.getsize(out) - size) / 120
+        bench.frames_row("face", size_of, device, "level %s, surfaces:f32" % level, "", "", max(rates), size)
+
+
+def surface_of(path, rows, columns):
+    """A sheet across the block, as a vessel's wall would lie in it: m."""
+    with open(path, "w") as to:
+        for i in range(rows):
+            for k in range(columns):
+                to.write("v %.9f %.9f %.9f\n" % (.01 + .14 * i / (rows - 1), .01 + .06 * k / (columns - 1), .03 + .004 * (i % 7) / 7))
+        for i in range(rows - 1):
+            for k in range(1, columns):
+                a = i * columns + k
+                to.write("f %d %d %d %d\n" % (a, a + 1, a + columns + 1, a + columns))
+
+
+def told(command, model, target):
+    """What msds-run -v tells of its frames, ms: in all, and the solver's part."""
+    with open(model, "rb") as reads, open(target, "wb") as writes:
+        ran = subprocess.run(command, stdin=reads, stdout=writes, stderr=subprocess.PIPE)
+    words = ran.stderr.decode(errors="replace").rsplit("a frame took", 1)
+    if ran.returncode or len(words) != 2:
+        fail("status %d of %s" % (ran.returncode, " ".join(command)))
+    said = words[1].split()
+    return float(said[0]), float(said[6])
+
+
+def bench_block_frames(bench, model, run, device, nodes):
+    tools = bench.versions[-1][1]
+    surface, bound, out = bench.path("sheet.obj"), bench.path("bound"), bench.path("frames")
+    surface_of(surface, 141, 71)
+    job([tools + "/sinew", "bind", "-q", "--unit", "m", surface], model, bound)
+    for method, option in (("springs", "msds"), ("20 CG", "fem")):
+        for choice in ("all", "displacement:f32", "surfaces", "surfaces:f32"):
+            least = (float("inf"), 0)
+            for _ in range(bench.rounds):
+                frames = [] if choice == "all" else ["--frames", choice]
+                least = min(least, told([tools + "/msds-run", "-v", "--method", option] + run + frames, bound, out))
+            size = (os.path.getsize(out) - os.path.getsize(bound)) / 60
+            bench.frames_row("block", nodes, device, "%s, %s" % (method, choice), least[0], least[1], "", size)
 
 
 def bench_block(bench, nodes, device, threads):
@@ -147,10 +216,11 @@ def bench_block(bench, nodes, device, threads):
     model = bench.compare("block", nodes, device, "msds-mesh", lambda tools, target: job(
         [tools + "/msds-mesh", "-q", "--nodes", nodes, "--size", "16cm,8cm,4cm"], os.devnull, target))
     frames = ["--frames", os.environ["FRAMES"]] if os.environ.get("FRAMES") else []
-    run = ["-q", "--method", "msds", "--threads", threads, "-d", device, "--probe", "linear:4cm,1cm", "--poses", poses]
+    run = ["--threads", threads, "-d", device, "--probe", "linear:4cm,1cm", "--poses", poses]
     newest = bench.versions[-1][1]
     bench.compare("block", nodes, device, "msds-run", lambda tools, target: job(
-        [tools + "/msds-run"] + run + (frames if tools == newest else []), model, target))
+        [tools + "/msds-run", "-q", "--method", "msds"] + run + (frames if tools == newest else []), model, target))
+    return model, run
 
 
 def main():
@@ -168,8 +238,14 @@ def main():
         if device == "cuda":
             bench.limit("machine", "", device, "context alone", context)
         for side in sys.argv[7:]:
-            bench_face(bench, os.path.abspath(face), side, device, threads, precision)
-        bench_block(bench, "128x64x64" if device == "cuda" else "32x16x16", device, threads)
+            model = bench_face(bench, os.path.abspath(face), side, device, threads, precision)
+            if device == "cuda":
+                bench_face_frames(bench, model, side + "mm", device, threads, precision)
+        nodes = "128x64x64" if device == "cuda" else "32x16x16"
+        block, run = bench_block(bench, nodes, device, threads)
+        bench_block_frames(bench, block, run, device, nodes)
+        print("pipe,size,device,frames,frame_ms,solver_ms,times_solver,model_s_a_s,bytes_a_frame")
+        print("\n".join(bench.of_frames))
     finally:
         shutil.rmtree(folder)
 

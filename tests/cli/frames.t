@@ -53,6 +53,10 @@ check "sinew results takes f32" sh -c "sinew results -q stress <'$T/u32.sinew' >
 check "and passes it on as f32" sh -c "sinew info '$T/stress.sinew' | grep -q 'node.displacement *f32'"
 check "sinew export takes f32" sinew export -q -f vtu -o "$T/out.vtu" "$T/u32.sinew"
 check "sinew render takes f32" sinew render -q --size 40x40 -o "$T/out.png" "$T/u32.sinew"
+tled --ramp 0 --frames displacement:f32,velocity <"$T/cube.sinew" >"$T/mixed.sinew"
+check "without --frames a run goes on with the types of the frames before" sh -c "tled-run -q -d cpu -n 5 <'$T/mixed.sinew' >'$T/on.sinew'"
+is "$(sinew info "$T/on.sinew" | grep -c 'node.displacement *f32\|node.velocity *f64')" 2 "f32 where they are, f64 where they are not"
+is "$(sinew info --get frames "$T/on.sinew")" "$(($(sinew info --get frames "$T/mixed.sinew") + 1))" "and has a frame more"
 check "a run goes on from f32" sh -c "tled-run -q -d cpu -n 5 --frames displacement:f32 <'$T/u32.sinew' >'$T/on.sinew' 2>'$T/said'"
 is "$(grep -c 'no node.velocity: the run begins with velocity 0' "$T/said")" 1 "and says that it has no velocities"
 
@@ -75,6 +79,9 @@ fails "results of surfaces alone" 1 "no node.displacement" sh -c "sinew results 
 fails "a picture of elements that are not there" 1 "no node.displacement" sinew render -q --show voxels -o "$T/out.png" "$T/surfaces.sinew"
 fails "a run from surfaces alone" 1 "no node.displacement" sh -c "tled-run -q -d cpu -n 5 <'$T/surfaces.sinew'"
 fails "frames of other arrays behind others" 1 "expected the same --frames" sh -c "tled-run -q -d cpu -n 5 --frames displacement <'$T/u32.sinew'"
+fails "all arrays behind fewer" 1 "no node.velocity, and those to come have it; expected --frames node.displacement:f32" sh -c "tled-run -q -d cpu -n 5 <'$T/u32.sinew'"
+sinew results -q stress <"$T/all.sinew" >"$T/stressed.sinew"
+fails "what this run does not make" 1 "have element.stress, which frames of this run cannot have" sh -c "tled-run -q -d cpu -n 5 <'$T/stressed.sinew'"
 fails "an array that is not there" 2 "expected some of displacement, velocity, surfaces" sh -c "tled-run -q --frames bodies <'$T/cube.sinew'"
 fails "a type that is none" 2 "expected f32 or f64" sh -c "tled-run -q --frames displacement:f16 <'$T/cube.sinew'"
 fails "an array twice" 2 "as f32 and as f64" sh -c "tled-run -q --frames displacement:f32,node.displacement <'$T/cube.sinew'"
@@ -100,5 +107,13 @@ sinew deform -q --unit mm "$T/vessel.obj" <"$T/surfaces.sinew" >"$T/got"
 check "msds-run: a vessel is where sinew deform moves it" cmp "$T/got" "$T/want"
 check "and has moved" sh -c "! cmp -s '$T/got' '$T/vessel.obj'"
 is "$(sinew info "$T/surfaces.sinew" | grep -c 'probe.force *f32')" 1 "the probe's force as f32"
+
+check "msds-run: a run goes on as f64 without --frames" sh -c "msds-run -q -d cpu --probe sphere:6mm --poses '$T/poses' <'$T/all.sinew' >'$T/on.sinew'"
+fails "msds-run: all arrays behind fewer" 1 "expected --frames node.displacement:f32" \
+    sh -c "msds-run -q -d cpu --probe sphere:6mm --poses '$T/poses' <'$T/f32.sinew'"
+fails "msds-run: a probe that is not there" 2 "'probe': probe.pose says nothing here; expected --probe too" \
+    sh -c "msds-run -q -d cpu --poses '$T/poses' --frames displacement,probe <'$T/bound.sinew'"
+fails "msds-run: nor is it offered" 2 "expected some of displacement, velocity, surfaces, node.displacement" \
+    sh -c "msds-run -q -d cpu --poses '$T/poses' --frames bodies <'$T/bound.sinew'"
 
 done_testing

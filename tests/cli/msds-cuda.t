@@ -77,6 +77,29 @@ same "a penalty" 1e-5 --method fem --contact penalty
 same "a penalty, exactly" 1e-5 --method fem --exact --contact penalty
 same "a penalty, tissue" 1e-5 --method tissue --contact penalty
 
+# ---- Frames of what is asked for: the numbers of all.
+printf 'v 40 30 40\nv 80 30 45\nv 60 60 50\nf 1 2 3\n' >"$T/vessel.obj"
+sinew bind -q --unit mm "$T/vessel.obj" <"$T/block.sinew" >"$T/bound.sinew" 2>"$T/said"
+bound() { # ARG...
+    msds-run -q -d cuda --probe sphere:2cm --poses "$T/press.tum" "$@" <"$T/bound.sinew"
+}
+for method in 'msds' 'fem --exact'; do
+    # shellcheck disable=SC2086
+    set -- $method
+    bound --method "$@" >"$T/all"
+    bound --method "$@" --frames displacement,velocity,probe >"$T/named"
+    bound --method "$@" --frames displacement:f32,surfaces >"$T/f32"
+    bound --method "$@" --frames surfaces,probe.force >"$T/surfaces"
+    check "$method: all by name" sinew diff --only node.displacement,node.velocity,probe.force,probe.pose "$T/all" "$T/named"
+    check "$method: f32 is rounded" sinew diff --only node.displacement --rel node.displacement=5.97e-8 "$T/all" "$T/f32"
+    sinew deform -q --unit mm "$T/vessel.obj" <"$T/all" >"$T/want"
+    for chosen in f32 surfaces; do
+        sinew deform -q --unit mm "$T/vessel.obj" <"$T/$chosen" >"$T/got"
+        check "$method, $chosen: a vessel is where sinew deform moves it" cmp "$T/got" "$T/want"
+    done
+done
+check "and has moved" sh -c "! cmp -s '$T/got' '$T/vessel.obj'"
+
 # ---- A probe that leaves, and stays away: frames find rest, and stay there.
 awk 'BEGIN { for (i = 0; i < 40; i++) printf "%g .06 .04 %.4f 1 0 0 0\n", i / 60, i < 4 ? .06 - .001 * i : .08 }' >"$T/leave.tum"
 for exact in '' --exact; do

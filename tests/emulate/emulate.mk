@@ -1,9 +1,10 @@
-# An emulated card, and the program that tests kernels on it: where there is g++, for x86-64. Nothing of CUDA is wanted.
-# $(BUILD)/emulate has tled's CUDA as g++ makes it: each access of theirs a call (-fsanitize=thread), which comes to shadow.cc.
+# An emulated card, and the programs that test kernels on it: where there is g++, for x86-64. Nothing of CUDA is wanted.
+# $(BUILD)/emulate has kernels as g++ makes them: each access of theirs a call (-fsanitize=thread), which comes to shadow.cc.
 
 EMULATE_CXX ?= $(if $(filter x86_64,$(shell uname -m)),$(shell command -v g++))
-EMULATE_CU := $(addprefix tled/cuda/,cuda_march cuda_single cuda_double cuda_look) common/solve/card $(addprefix tests/emulate/,wrong any_single any_double)
-EMULATE_OBJ := $(addprefix $(BUILD)/emulate/,$(addsuffix .o,$(EMULATE_CU) tled/cuda/cuda_march_double fibres shadow shared telling streams tled/cuda/march)) \
+EMULATE_CARD := $(addprefix $(BUILD)/emulate/,$(addsuffix .o,common/solve/card fibres shadow shared telling streams))
+EMULATE_CU := $(addprefix tled/cuda/,cuda_march cuda_single cuda_double cuda_look) $(addprefix tests/emulate/,wrong any_single any_double)
+EMULATE_TLED := $(EMULATE_CARD) $(addprefix $(BUILD)/emulate/,$(addsuffix .o,$(EMULATE_CU) tled/cuda/cuda_march_double tled/cuda/march)) \
 	$(addprefix $(BUILD)/tled/cuda/,march_units.o march_cells.o march_near.o march_tips.o) \
 	$(addprefix $(BUILD)/tled/tiles/,bricks.o places.o lattice_sheet.o tile_parts.o tile_split.o tiles.o)
 EMULATE_FLAGS = -std=c++17 -g -Wall $(WERROR) -Itests/emulate $(CPPFLAGS) -MMD -MP
@@ -31,10 +32,17 @@ $(BUILD)/emulate/tled/cuda/march.o: tled/cuda/march.c
 	@mkdir -p $(@D)
 	$(call run,CC $<,$(CC) $(ALL_CFLAGS) -DMARCH_SPARSE=1e9 -Dmarch_near_find=near_find_tried -c -o $@ $<)
 
-# Elsewhere it is a unit test as others are, and skips.
-EMULATED := $(if $(EMULATE_CXX),tests/unit/test_tled_emulated)
+EMULATE_MSDS := $(EMULATE_CARD) $(addprefix $(BUILD)/emulate/,msds/cuda/cuda_frames.o tests/emulate/emulated_frames.o)
+
+# Elsewhere they are unit tests as others are, and skip.
+EMULATED := $(if $(EMULATE_CXX),$(addprefix tests/unit/test_,tled_emulated msds_emulated))
 ifneq ($(EMULATED),)
-$(BUILD)/$(EMULATED).o: CPPFLAGS += -DSINEW_EMULATED
-$(BUILD)/$(EMULATED): $(BUILD)/$(EMULATED).o $(EMULATE_OBJ) $(call needs,$(EMULATED).c) $(MAIN_OBJ) $(LIB)
-	$(call run,LD $@,$(EMULATE_CXX) $(CFLAGS) $(LDFLAGS) -fsanitize=address -fsanitize=undefined -o $@ $^ $(AS_NEEDED) $(EMBREE) $(PICTURES) $(COLLIDE) $(LDLIBS))
+$(EMULATED:%=$(BUILD)/%.o): CPPFLAGS += -DSINEW_EMULATED
+$(BUILD)/tests/unit/test_tled_emulated: $(EMULATE_TLED)
+$(BUILD)/tests/unit/test_msds_emulated: $(EMULATE_MSDS)
+define emulated_program
+$(BUILD)/$(1): $(BUILD)/$(1).o $(call needs,$(1).c) $(MAIN_OBJ) $(LIB)
+	$$(call run,LD $$@,$$(EMULATE_CXX) $$(CFLAGS) $$(LDFLAGS) -fsanitize=address -fsanitize=undefined -o $$@ $$(filter-out $$(LIB),$$^) $$(LIB) $$(AS_NEEDED) $$(EMBREE) $$(PICTURES) $$(COLLIDE) $$(LDLIBS))
+endef
+$(foreach program,$(EMULATED),$(eval $(call emulated_program,$(program))))
 endif

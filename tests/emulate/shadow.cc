@@ -543,12 +543,17 @@ cudaError_t cudaMemcpy(void *to, const void *from, size_t size, cudaMemcpyKind k
     return cudaGetLastError();
 }
 
-/* Is not waited for. */
 cudaError_t cudaMemset(void *at, int value, size_t size)
+{
+    return cudaMemsetAsync(at, value, size, NULL);
+}
+
+/* Is not waited for. */
+cudaError_t cudaMemsetAsync(void *at, int value, size_t size, cudaStream_t stream)
 {
     if (!piece_of(at, size))
         return cudaErrorInvalidValue;
-    ask(NULL, [=] {
+    ask(stream, [=] {
         open_memory(true);
         memset(at, value, size);
         open_memory(false);

@@ -30,7 +30,7 @@ static bool is_whole(const world *w, const frame *f)
     return whole;
 }
 
-static int put(void *context, const frame *f, err *e)
+static int put(void *context, frame *f, err *e)
 {
     world *w = context;
     struct timespec end;

@@ -19,7 +19,8 @@ struct tled_state {
     int64_t slot[SLOTS];
     int64_t bad_fetch, bad_write; /* frames that fail */
     int64_t fetched, written;
-    bool whole;  /* each written frame was the one that was due, all of it */
+    int64_t lasts, last; /* how often it was told the last frame, and which that was */
+    bool whole;          /* each written frame was the one that was due, all of it */
     bool beside; /* the first waits, while it is written, for the second to be fetched; false once that was in vain */
     pthread_mutex_t lock;
     pthread_cond_t changed;
@@ -61,13 +62,20 @@ static int put(void *context, double time, const field_values *state, err *e)
     return number == w->bad_write ? err_set(e, NULL, 0, "no room for %lld", (long long)number) : 0;
 }
 
+static void note_last(void *context, const field_values *state)
+{
+    world *w = context;
+    w->lasts++;
+    w->last = (int64_t)state->of[TLED_DISPLACEMENT][3 * NODES - 1];
+}
+
 /* Sends frames as run.c does; how many were sent before something was known to be wrong. */
 static int64_t send_all(world *w, int64_t frames, err *e)
 {
     const tled_problem p = {.nodes = NODES, .fields = tled_fields(NODES, 0)};
     const tled_executor device = {.fetch = fetch};
     int64_t i = 0;
-    frame_writer *o = frame_writer_create(&p, &device, w, put, w, e);
+    frame_writer *o = frame_writer_create(&p, &device, w, put, note_last, w, e);
     ok(o, "an frame_writer");
     for (; o && i < frames; i++) {
         if (i >= SLOTS && frame_writer_wait_fetched(o, i - SLOTS, e))
@@ -99,6 +107,7 @@ int main(void)
     begin(&w);
     ok(send_all(&w, 1000, &e) == 1000 && !e.status && w.whole && w.written == 1000, "1000 frames, in order, whole %s",
        e.text);
+    ok(w.lasts == 1 && w.last == 999, "and the last is told once");
     begin(&w);
     w.beside = true;
     ok(send_all(&w, 100, &e) == 100 && w.whole && w.written == 100 && w.beside,
@@ -112,6 +121,7 @@ int main(void)
     e = (err){0};
     ok(send_all(&w, 1000, &e) < 1000 && !strcmp(e.text, "no room for 20") && w.whole && w.written == 21,
        "one that cannot be written is the last: %s", e.text);
+    ok(!w.lasts, "and then none is told as the last");
     begin(&w);
     w.bad_fetch = 2;
     w.bad_write = 1;
@@ -120,6 +130,6 @@ int main(void)
     ok(!strcmp(e.text, "no room for 1") && w.written == 2, "of two, the first is told: %s", e.text);
     begin(&w);
     e = (err){0};
-    ok(send_all(&w, 0, &e) == 0 && !e.status, "none");
+    ok(send_all(&w, 0, &e) == 0 && !e.status && !w.lasts, "none");
     return done_testing();
 }

@@ -431,6 +431,45 @@ static void test_narrow(void)
     frame_free(&back);
 }
 
+/* Two frames of the same numbers, the second of floats if so. */
+static out *write_two(bool text, bool floats)
+{
+    static const float single[9] = {.1f, -1 / 3.f, 0, 1e-40f, -0.f, 3e38f, 1, 2, 3};
+    double wide[9];
+    err e = {0};
+    model m = {0};
+    frame f = {.time = 1};
+    out *o = out_memory(&e);
+    model_writer *w = model_writer_open(o, text, &e);
+    for (int i = 0; i < 9; i++)
+        wide[i] = (double)single[i];
+    model_axis_add(&m, "node", 3, &e);
+    model_array *a = frame_lend(&f, &m, "node.displacement", "m", "node", 3, wide, &e);
+    a->narrow = true;
+    bool whole = !model_write(w, &m, &e) && !model_write_frame(w, &f, &e);
+    f.index = 1;
+    a->narrow = !floats;
+    model_array_lend(a, floats ? MODEL_F32 : MODEL_F64, floats ? (const void *)single : wide);
+    whole = whole && !model_write_frame(w, &f, &e) && !model_write_end(w, &e);
+    ok(whole, "two frames stored as f32%s: %s", floats ? ", one of floats" : "", e.text);
+    model_writer_close(w);
+    frame_free(&f);
+    model_free(&m);
+    return o;
+}
+
+static void test_lent_floats(void)
+{
+    for (int text = 0; text < 2; text++) {
+        out *o[2] = {write_two(text, false), write_two(text, true)};
+        size_t size[2];
+        const unsigned char *b[2] = {out_bytes(o[0], &size[0]), out_bytes(o[1], &size[1])};
+        ok(size[0] == size[1] && size[0] > 0 && !memcmp(b[0], b[1], size[0]), "of doubles or floats, the same bytes");
+        out_discard(o[0]);
+        out_discard(o[1]);
+    }
+}
+
 /* A frame is there as soon as its last array is (from the second on): nothing of the next may be needed. */
 static void test_liveness(void)
 {
@@ -481,6 +520,7 @@ int main(void)
     test_one_nan();
     test_floats();
     test_narrow();
+    test_lent_floats();
     test_liveness();
     test_changed();
     return done_testing();

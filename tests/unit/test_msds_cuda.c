@@ -11,6 +11,7 @@
 #include "base/mem.h"
 #include "msds/cpu/msds_cpu.h"
 #include "msds/problem/largest.h"
+#include "msds/problem/simplex.h"
 
 #include "tap.h"
 
@@ -26,7 +27,8 @@ typedef struct pair { /* the same model here and there */
     msds_reading reading[2];
     double worst, force, torque; /* m, N, N m: the largest difference so far */
     int64_t different;           /* numbers that are not the same */
-    double largest;              /* m, N: the largest so far */
+    int64_t sent, unlike; /* frames; numbers of theirs that are not the state's, and wrong counts of tetrahedra */
+    double largest;       /* m, N: the largest so far */
     double pressed, twisted;
     double lever; /* m: the probe's size */
 } pair;
@@ -72,6 +74,8 @@ static void make(pair *c, const tets *b, const msds_options *o, bool shaken, con
         c->v[i] = mem_array(c->p.nodes, 3 * sizeof *c->v[i], "test", &e);
         tets_must(c->state[i] && c->u[i] && c->v[i], &e);
     }
+    const msds_frames all = {.displacement = true, .velocity = true};
+    tets_must(!cuda->frames(c->state[1], &all, &e), &e);
 }
 
 static void drop(pair *c)
@@ -101,6 +105,35 @@ static void compare_wrench(pair *c)
     c->torque = fmax(c->torque, sqrt(twist));
 }
 
+static int64_t count_inverted(const pair *c, const double *u)
+{
+    int64_t count = 0;
+    for (int64_t t = 0; t < c->p.elements; t++) {
+        double x[4][3];
+        for (int i = 0; i < 4; i++)
+            for (int a = 0; a < 3; a++) {
+                const int64_t k = 3 * (int64_t)c->p.element_node[4 * t + i] + a;
+                x[i][a] = c->p.position[k] + u[k];
+            }
+        count += !(simplex_volume(x[0], x[1], x[2], x[3]) > 0);
+    }
+    return count;
+}
+
+/* A frame that the card has sent has the state's numbers. */
+static void compare_sent(pair *c)
+{
+    err e = {0};
+    msds_values got;
+    const int slot = (int)(c->sent++ % MSDS_SLOTS);
+    tets_must(!c->device[1]->snapshot(c->state[1], slot, &e) && !c->device[1]->fetch(c->state[1], slot, &got, &e), &e);
+    for (int64_t k = 0; k < 3 * c->p.nodes; k++) {
+        const double u = got.precise ? got.precise[k] : (double)got.displacement[k];
+        c->unlike += u != c->u[1][k] || (double)got.velocity[k] != c->v[1][k];
+    }
+    c->unlike += c->reading[1].inverted != count_inverted(c, c->u[1]);
+}
+
 static void frame_of(pair *c, const msds_plan *plan, int64_t count)
 {
     err e = {0};
@@ -110,6 +143,7 @@ static void frame_of(pair *c, const msds_plan *plan, int64_t count)
                       !c->device[i]->get(c->state[i], MSDS_DISPLACEMENT, c->u[i], &e) &&
                       !c->device[i]->get(c->state[i], MSDS_VELOCITY, c->v[i], &e),
                   &e);
+    compare_sent(c);
     for (int64_t k = 0; k < 3 * c->p.nodes; k++) {
         c->worst = fmax(c->worst, fabs(c->u[1][k] - c->u[0][k]));
         c->different += c->u[1][k] != c->u[0][k] || c->v[1][k] != c->v[0][k];
@@ -169,6 +203,8 @@ static void test_same(const setting *g, msds_method method, const msds_executor 
        c.pressed, c.twisted);
     ok(close_enough(&c), "%s: within 1e-5: %.3g, forces %.3g, torques %.3g", name, c.worst / c.largest,
        c.force / c.pressed, c.torque / (c.pressed * c.lever));
+    ok(!c.unlike && c.sent, "%s: %lld frames are sent as the state is, inverted tetrahedra counted", name,
+       (long long)c.sent);
     if (method < MSDS_EXACT && !g->options.penalty)
         ok(!c.different, "%s: the same numbers as the CPU's (%lld differ)", name, (long long)c.different);
     if (method != MSDS_SPRINGS)
@@ -188,6 +224,7 @@ static void test_changes(const tets *b, const msds_executor *cuda)
     make(&c, b, &o, false, cuda);
     for (int i = 0; i < 8; i++)
         press(&c, b, NULL, methods[i], 5, 7 + i);
+    ok(!c.unlike && c.sent, "%lld frames are sent, in single and double precision, as the state is", (long long)c.sent);
     ok(close_enough(&c), "methods change and the state goes along: %.3g, forces %.3g", c.worst / c.largest,
        c.force / c.pressed);
     drop(&c);

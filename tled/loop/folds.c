@@ -26,14 +26,23 @@ void folds_free(folds *f)
 void folds_add(folds *f, double time, const double *displacement)
 {
     const strained_view v = strained_view_of(f->p, displacement, f->last.quality.element);
-    f->last = strained_of(&v, f->threads, f->part);
+    f->last = strained_none();
+    f->last.quality = strained_quality(&v, f->threads, f->part);
+    f->has_energies = false;
     f->time = time;
     if (!f->frames || f->last.quality.worst < f->worst.quality.worst) {
-        f->worst = f->last;
+        f->worst = f->last.quality.folded ? strained_of(&v, f->threads, f->part) : f->last;
         f->worst_time = time;
     }
     f->frames++;
     f->folded += f->last.quality.folded > 0;
+}
+
+void folds_end(folds *f, const double *displacement)
+{
+    const strained_view v = strained_view_of(f->p, displacement, f->last.quality.element);
+    f->last = strained_of(&v, f->threads, f->part);
+    f->has_energies = true;
 }
 
 static double share(const strained *s)
@@ -51,14 +60,14 @@ static char *number_text(double value, char text[NUM_TEXT])
 void folds_text(const folds *f, bool ended, char text[FOLDS_TEXT])
 {
     const quality *q = &f->last.quality;
-    char when[60] = "", centre[NUM_TEXT], corner[NUM_TEXT], part[NUM_TEXT];
+    char when[60] = "", centre[NUM_TEXT], corner[NUM_TEXT], part[NUM_TEXT], energy[80] = "";
     if (!ended)
         snprintf(when, sizeof when, "the last frame, at %.6g s: ", f->time);
-    snprintf(text, FOLDS_TEXT,
-             "%ssmallest J %s in the middle of an element, %s at a corner; %lld folded; hourglass energy %s %% of "
-             "strain energy",
-             when, number_text(q->centre, centre), number_text(q->corner, corner), (long long)q->folded,
-             number_text(100 * share(&f->last), part));
+    if (f->has_energies)
+        snprintf(energy, sizeof energy, "; hourglass energy %s %% of strain energy",
+                 number_text(100 * share(&f->last), part));
+    snprintf(text, FOLDS_TEXT, "%ssmallest J %s in the middle of an element, %s at a corner; %lld folded%s", when,
+             number_text(q->centre, centre), number_text(q->corner, corner), (long long)q->folded, energy);
 }
 
 enum { REMEDY_TEXT = 160 };
@@ -142,7 +151,7 @@ void folds_warn(const folds *f, bool ended, double most_strain, notes *warnings)
         warn_of_folds(f, ended, warnings);
     else if (f->folded)
         warn_of_frames(f, warnings);
-    if (is_artificial(f) && s->twisted >= 0 && share(s) > QUALITY_HOURGLASS &&
+    if (is_artificial(f) && f->has_energies && s->twisted >= 0 && share(s) > QUALITY_HOURGLASS &&
         s->hourglass > QUALITY_HOURGLASS * .01 * most_strain)
         warn_of_hourglass(f, ended, warnings);
 }

@@ -13,10 +13,11 @@ typedef struct folds {
     const model *m;
     pool *threads; /* its own: it reads frames while the run goes on */
     strained *part;
-    strained last;          /* of the frame seen last */
+    strained last;          /* of the frame seen last; */
+    bool has_energies;      /* not its quality alone */
     int64_t frames, folded; /* seen; with a folded element */
     double time;            /* s: of the last */
-    strained worst;         /* of the frame whose J at a corner is the smallest */
+    strained worst;         /* of the frame whose J at a corner is the smallest; its energies if elements are folded */
     double worst_time;      /* s */
 } folds;
 
@@ -26,8 +27,11 @@ enum { FOLDS_TEXT = 500 };
 int folds_make(folds *f, const tled_problem *p, const model *m, int threads, err *e);
 void folds_free(folds *f);
 
-/* Adds a frame: displacement, nodes x 3, m. Not in two threads at once. */
+/* Adds a frame: displacement, nodes x 3, m; its energies are left for the last. Not in two threads at once. */
 void folds_add(folds *f, double time, const double *displacement);
+
+/* Adds the energies of the frame seen last, so that they can be told. */
+void folds_end(folds *f, const double *displacement);
 
 /* The last frame in a line; where the run did not come to its end, also when that is. */
 void folds_text(const folds *f, bool ended, char text[FOLDS_TEXT]);

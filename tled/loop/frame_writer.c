@@ -21,6 +21,7 @@ struct frame_writer {
     const tled_executor *device;
     tled_state *state;
     frame_writer_write *write;
+    frame_writer_last *last;
     void *context;
     const fields *fields;
     field_values frame[FRAMES]; /* by number: what is being fetched, and what is being written */
@@ -107,7 +108,7 @@ static int make_frames(frame_writer *w, const fields *f, err *e)
 }
 
 frame_writer *frame_writer_create(const tled_problem *p, const tled_executor *device, tled_state *state,
-                                  frame_writer_write *write, void *context, err *e)
+                                  frame_writer_write *write, frame_writer_last *last, void *context, err *e)
 {
     frame_writer *w = mem_array(1, sizeof *w, "the frames", e);
     if (!w)
@@ -115,6 +116,7 @@ frame_writer *frame_writer_create(const tled_problem *p, const tled_executor *de
     w->device = device;
     w->state = state;
     w->write = write;
+    w->last = last;
     w->context = context;
     w->fields = &p->fields;
     w->whole = INT64_MAX;
@@ -173,6 +175,8 @@ int frame_writer_close(frame_writer *w, err *e)
     pthread_mutex_unlock(&w->lock);
     while (w->running)
         pthread_join(w->thread[--w->running], NULL);
+    if (w->last && w->written && !w->e.status)
+        w->last(w->context, &w->frame[(w->written - 1) % FRAMES]);
     const int broken = err_join(e, &w->e);
     for (int i = 0; i < FRAMES; i++)
         fields_free(&w->frame[i]);

@@ -12,9 +12,12 @@ typedef struct frame_writer frame_writer;
 /* A state to write out: the fields that frames have; -1 with e filled. */
 typedef int frame_writer_write(void *context, double time, const field_values *state, err *e);
 
-/* Frames are fetched from the state of a device. NULL with e filled. */
+/* The last state that was written out: once, when all were, none of them badly. */
+typedef void frame_writer_last(void *context, const field_values *state);
+
+/* Frames are fetched from the state of a device. last: or NULL. NULL with e filled. */
 frame_writer *frame_writer_create(const tled_problem *p, const tled_executor *device, tled_state *state,
-                                  frame_writer_write *write, void *context, err *e);
+                                  frame_writer_write *write, frame_writer_last *last, void *context, err *e);
 
 /* Sends the snapshot in a slot, of a state at `time`, s. */
 void frame_writer_send(frame_writer *w, int slot, double time);

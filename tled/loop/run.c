@@ -90,7 +90,7 @@ static int refine(run *n)
     const bool failed = frame_writer_close(writer, n->e) || take_over(n, &values);
     n->finer.at_start = r->p->at_start;
     fields_free(&values);
-    n->writer = failed ? NULL : frame_writer_create(r->p, n->device, n->state, r->frame, r->context, n->e);
+    n->writer = failed ? NULL : frame_writer_create(r->p, n->device, n->state, r->frame, r->last, r->context, n->e);
     if (!n->writer)
         return -1;
     if (r->refined)
@@ -315,7 +315,7 @@ static int make_state(run *n)
     n->state = n->device->create(r->p, r->threads, n->e);
     if (!n->state)
         return -1;
-    n->writer = frame_writer_create(r->p, n->device, n->state, r->frame, r->context, n->e);
+    n->writer = frame_writer_create(r->p, n->device, n->state, r->frame, r->last, r->context, n->e);
     return n->writer ? 0 : -1;
 }
 

@@ -104,6 +104,7 @@ typedef struct run_setup {
     /* Writes a state as a frame, in the order of time; called in a thread of the writer's. -1 with e filled ends the
      * run, at a frame soon after. */
     frame_writer_write *frame;
+    frame_writer_last *last; /* of all frames that an executor gave; or NULL */
     /* After every check. remaining: see relax_share; cut: parts that each step is taken in from now on. */
     void (*checked)(void *context, int64_t step, const monitor_reading *reading, double remaining, int64_t cut,
                     double damping);

@@ -63,7 +63,7 @@ static int make_again(run *n, again from)
     p->start = run_now(n);
     n->device->destroy(n->state);
     n->state = n->device->create(p, r->threads, n->e);
-    n->writer = n->state ? frame_writer_create(p, n->device, n->state, r->frame, r->context, n->e) : NULL;
+    n->writer = n->state ? frame_writer_create(p, n->device, n->state, r->frame, r->last, r->context, n->e) : NULL;
     return n->writer ? 0 : -1;
 }
 

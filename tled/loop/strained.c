@@ -19,6 +19,13 @@ strained_view strained_view_of(const tled_problem *p, const double *displacement
     return v;
 }
 
+/* What J at the corners of a box is bounded by. */
+typedef struct shape {
+    element_tensor h; /* grad u in the middle */
+    hourglass_modes modes;
+    double dilation; /* J - 1 there */
+} shape;
+
 /* Whether J at all corners of a box is above a limit, from what is known of it anyway: false where that does not tell.
  * With A = F in the middle and A + D at a corner, in Frobenius' norm,
  *     det(A + D) = det A + cof A : D + A : cof D + det D, |cof X| <= |X|^2 / sqrt(3), |det X| <= |X|^3 / (3 sqrt(3)).
@@ -26,7 +33,7 @@ strained_view strained_view_of(const tled_problem *p, const double *displacement
  * three: |D|^2 <= 9 slope^2 Q, Q the sum of all squares. Where |D| is at most 1/4,
  * as |A| <= (1 + |A|^2) / 2,
  *     det(A + D) >= det A - |D| (|A|^2 + (1 + |A|^2) / 8 + 1/48) / sqrt(3). */
-static bool is_above(const strained_view *v, const deformed *d, double limit)
+static bool is_above(const strained_view *v, const shape *d, double limit)
 {
     const element_tensor h = d->h;
     const double gap = 1 + d->dilation - limit - 1e-9; /* for rounding */
@@ -37,20 +44,24 @@ static bool is_above(const strained_view *v, const deformed *d, double limit)
     return gap > 0 && 16 * away <= 1 && away * most * most < 3 * gap * gap;
 }
 
-/* The corners of elements that are no boxes, or cut, are always computed. */
-static void add_quality(quality *to, const strained_view *v, int64_t element, const deformed *d)
+/* d: NULL of elements that are no boxes, or cut, whose corners are always computed. */
+static void add_quality(quality *to, const strained_view *v, int64_t element, const shape *d)
 {
-    const double limit = to->corner < v->limit ? to->corner : v->limit, centre = 1 + d->dilation;
-    const bool knows = !v->p->conforming && !tled_cut(v->p, element); /* that F in the middle */
-    if (knows && is_above(v, d, limit > 0 ? limit : 0)) {
-        if (!(centre >= to->centre))
-            to->centre = centre;
+    const double limit = to->corner < v->limit ? to->corner : v->limit;
+    if (d && is_above(v, d, limit > 0 ? limit : 0)) {
+        if (!(1 + d->dilation >= to->centre))
+            to->centre = 1 + d->dilation;
         return;
     }
     quality_j j = quality_of(&v->mesh, element, v->displacement);
-    if (knows)
-        j.centre = centre; /* the same bits, whether corners are computed or not */
+    if (d)
+        j.centre = 1 + d->dilation; /* the same bits, whether corners are computed or not */
     quality_add(to, element, j);
+}
+
+static bool is_box(const tled_problem *p, int64_t element)
+{
+    return !p->conforming && !tled_cut(p, element);
 }
 
 void strained_add(strained *to, const strained_view *v, int64_t element, const deformed *d)
@@ -63,7 +74,8 @@ void strained_add(strained *to, const strained_view *v, int64_t element, const d
         to->most = hourglass;
         to->twisted = element;
     }
-    add_quality(&to->quality, v, element, d);
+    const shape of = {d->h, d->modes, d->dilation};
+    add_quality(&to->quality, v, element, is_box(v->p, element) ? &of : NULL);
 }
 
 void strained_join(strained *to, const strained *later)
@@ -94,6 +106,38 @@ static void work(void *context, int64_t chunk, int64_t from, int64_t to)
         strained_add(&sum, j->v, i, &d);
     }
     j->part[chunk] = sum;
+}
+
+/* The bits of strained_add, without laws and energies. */
+static void quality_work(void *context, int64_t chunk, int64_t from, int64_t to)
+{
+    const job *j = context;
+    const tled_problem *p = j->v->p;
+    const double *u = j->v->displacement;
+    const element_shape box = element_box(p->side[0], p->side[1], p->side[2]);
+    quality sum = quality_none();
+    for (int64_t i = from; i < to; i++) {
+        if (!is_box(p, i)) {
+            add_quality(&sum, j->v, i, NULL);
+            continue;
+        }
+        const element_modes x = deformed_modes(p, i, u, 0), y = deformed_modes(p, i, u, 1),
+                            z = deformed_modes(p, i, u, 2);
+        shape of = {element_gradient_by(NULL, x, y, z, box.slope), element_hourglass_modes(x, y, z), 0};
+        of.dilation = element_dilation(of.h);
+        add_quality(&sum, j->v, i, &of);
+    }
+    j->part[chunk].quality = sum;
+}
+
+quality strained_quality(const strained_view *v, pool *threads, strained *part)
+{
+    job j = {v, part};
+    quality all = quality_none();
+    pool_run(threads, v->p->elements, STRAINED_CHUNK, quality_work, &j);
+    for (int64_t c = 0; c < pool_chunks(v->p->elements, STRAINED_CHUNK); c++)
+        quality_join(&all, &part[c].quality);
+    return all;
 }
 
 strained strained_of(const strained_view *v, pool *threads, strained *part)

@@ -42,4 +42,7 @@ void strained_join(strained *to, const strained *later);
 /* Of all elements. part: pool_chunks(elements, STRAINED_CHUNK), to be filled. */
 strained strained_of(const strained_view *v, pool *threads, strained *part);
 
+/* Its quality alone, for a part of the time. */
+quality strained_quality(const strained_view *v, pool *threads, strained *part);
+
 #endif

@@ -5,14 +5,6 @@
 #include "tled/problem/conforming_step.h"
 #include "tled/problem/muscle_fibre.h"
 
-static element_modes modes_of(const tled_problem *p, int64_t element, const double *displacement, int axis)
-{
-    element_corners c;
-    for (int i = 0; i < 8; i++)
-        c.at[i] = displacement[3 * (int64_t)p->element_node[8 * element + i] + axis];
-    return element_modes_of(c);
-}
-
 /* Of a laminate: its energies, nan where its parts cannot be. The law keeps what adds to the tangent at the mean F. */
 static void find_laminate(const tled_problem *p, int64_t element, element_shape box, element_modes x, element_modes y,
                           element_modes z, deformed *d)
@@ -32,8 +24,8 @@ static void find_laminate(const tled_problem *p, int64_t element, element_shape 
 deformed deformed_of(const tled_problem *p, int64_t element, element_shape box, const double *displacement)
 {
     deformed d = {.law = tled_law_of(p, element)};
-    element_modes x = modes_of(p, element, displacement, 0), y = modes_of(p, element, displacement, 1);
-    element_modes z = modes_of(p, element, displacement, 2);
+    element_modes x = deformed_modes(p, element, displacement, 0), y = deformed_modes(p, element, displacement, 1);
+    element_modes z = deformed_modes(p, element, displacement, 2);
     hourglass_force f;
     if (p->conforming) {
         const conforming_hold hold = conforming_hold_of(p, element);

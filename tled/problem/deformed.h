@@ -23,6 +23,15 @@ typedef struct deformed {
     laminate_state laminate;
 } deformed;
 
+/* The modes of one component of the displacement, nodes x 3. */
+static inline element_modes deformed_modes(const tled_problem *p, int64_t element, const double *displacement, int axis)
+{
+    element_corners c;
+    for (int i = 0; i < 8; i++)
+        c.at[i] = displacement[3 * (int64_t)p->element_node[8 * element + i] + axis];
+    return element_modes_of(c);
+}
+
 /* box: of elements that are a lattice's. displacement: nodes x 3. */
 deformed deformed_of(const tled_problem *p, int64_t element, element_shape box, const double *displacement);
 

@@ -203,7 +203,7 @@ static int take_frames(session *s, bool changed, err *e)
     s->started = count > 0 && !changed;
     s->run.first = (s->run.every > 0 || s->live) && !s->started;
     const int failed = count > 0 && (tled_problem_start(&s->problem, &last, &s->warnings, e) ||
-                                     (!changed && frame_choice_fits(&s->frames, &last, where_from(s), e)))
+                                     (!changed && frame_choice_follow(&s->frames, &last, where_from(s), e)))
                            ? -1
                            : 0;
     if (count > 0)
@@ -396,6 +396,7 @@ static void set_run(session *s, const struct options *o)
     s->run.every = o->every > 0 ? o->every : 0;
     s->run.context = s;
     s->run.frame = tled_frame_write;
+    s->run.last = tled_frame_last;
     s->run.checked = checked;
     s->run.cut = say_cut;
     s->run.refined = words_refined;

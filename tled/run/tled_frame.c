@@ -174,10 +174,21 @@ int tled_frame_write(void *context, double time, const field_values *state, err 
     return result;
 }
 
+void tled_frame_last(void *context, const field_values *state)
+{
+    session *s = context;
+    folds_end(&s->folds, state->of[TLED_DISPLACEMENT]);
+}
+
 int tled_frame_replay(void *context, const frame *f, err *e)
 {
     session *s = context;
     const model_array *u = frame_find(f, "node.displacement");
+    const double *displacement = u && u->rows == s->problem.nodes ? u->f64 : NULL;
     s->next_frame = f->index + 1;
-    return put_frame(s, f, u && u->rows == s->problem.nodes ? u->f64 : NULL, e);
+    if (put_frame(s, f, displacement, e))
+        return -1;
+    if (displacement)
+        folds_end(&s->folds, displacement); /* nothing may come after it */
+    return 0;
 }

@@ -20,7 +20,10 @@ bool tled_frame_takes_curves(const session *s);
 /* run_setup's, with a session: writes a state as a frame. */
 int tled_frame_write(void *context, double time, const field_values *state, err *e);
 
-/* The same of a frame that a checkpoint has as it was written. */
+/* run_setup's: what is told of the last frame alone. */
+void tled_frame_last(void *context, const field_values *state);
+
+/* The same as tled_frame_write of a frame that a checkpoint has as it was written. */
 int tled_frame_replay(void *context, const frame *f, err *e);
 
 #endif
