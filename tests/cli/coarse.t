@@ -82,6 +82,17 @@ is $? 2 "--coarse yes is refused"
 grep -q "coarse" "$T/said"
 is $? 0 "and said what was wrong"
 
+# A part that nothing holds: what nothing pushes stays there, but a coarser model of it might not.
+box skin 140 0 0 145 5 5 >>"$T/bar.obj"
+voxelise -q --unit mm -s 2.5 --volumes "$T/volumes" --materials "$T/materials" "$T/bar.obj" 2>"$T/said" |
+    attach -q --fibre axis --rigid-file "$T/wall.obj" >"$T/model" 2>>"$T/said"
+rests loose --rest 1e-3 --script "$T/script"
+grep -q 'no coarser model: nothing holds a part of it' "$T/loose.said"
+is $? 0 "a part that nothing holds: it begins from no coarser model, and says why"
+[ -n "$(steps loose)" ]
+is $? 0 "and comes to rest"
+bar 42.5
+
 # A stream whose nodes are told to be elsewhere in the lattice than their elements.
 voxelise -q --unit mm -s 2.5 --volumes "$T/volumes" --materials "$T/materials" "$T/bar.obj" 2>"$T/said" |
     attach -q --text --fibre axis --rigid-file "$T/wall.obj" 2>>"$T/said" |

@@ -71,6 +71,14 @@ near "$(sinew info --get node.displacement.max "$T/out")" "$(column displacement
 near "$(sinew info --get node.velocity.max "$T/out")" "$(column speed "$T/log1")" 1e-8 "the largest speed"
 check "to rest" tled-run -q -d cpu -g 0,0,-9.81 --rest 1e-3 --log "$T/log" -o "$T/out" <"$T/block.sinew"
 check "what remains, in the end: $(column remaining "$T/log")" awk "BEGIN { exit !($(column remaining "$T/log") <= 1e-3) }"
+# Steps grow at the script's end, .1 s: seen from there a multiple lies in the step to it that an earlier one was of.
+check "to rest, by an interval that no step meets" tled-run -q -d cpu -g 0,0,-9.81 --rest 1e-3 --every .0071 --log "$T/log" --log-every .0071 -o "$T/grown" <"$T/block.sinew"
+# twice: multiples of .0071 s that several times of standard input are of; the last time, of the end, is none.
+twice() {
+    sed '$d' | awk '{ m = int($1 / .0071 + 1e-6) } NR > 1 && m == was { print m } { was = m }'
+}
+is "$(sed 1d "$T/log" | cut -f 1 | twice)" "" "no multiple has two rows"
+is "$(sinew info --tsv node.displacement.max "$T/grown" | sed 1d | cut -f 2 | twice)" "" "nor two frames"
 check "a run gone on with" sh -c "tled-run -q -d cpu -g 0,0,-9.81 -t .05 --log '$T/log' <'$T/out' >/dev/null"
 is "$(awk -F '\t' 'NR == 2 { print $8 + $13, $14 }' "$T/log")" "0 0" "counts from its start"
 

@@ -45,18 +45,29 @@ int coarse_holds(coarse *c, err *e)
 
 typedef struct entry {
     int32_t node, curve, spring;
+    int64_t of; /* its place among those of finer nodes, in whose order shares are added */
     double share;
 } entry;
 
+/* Entries that become one are alike in these. */
+static int order_alike(const entry *a, const entry *b)
+{
+    if (a->node != b->node)
+        return a->node < b->node ? -1 : 1;
+    if (a->curve != b->curve)
+        return a->curve < b->curve ? -1 : 1;
+    return (a->spring > b->spring) - (a->spring < b->spring);
+}
+
+/* No two are equal, so that every sort makes one order of them, and sums are the same to the last bit. */
 static int order(const void *one, const void *other)
 {
     const entry *a = one, *b = other;
-    if (a->node != b->node)
-        return a->node < b->node ? -1 : 1;
-    return (a->curve > b->curve) - (a->curve < b->curve);
+    const int alike = order_alike(a, b);
+    return alike ? alike : (a->of > b->of) - (a->of < b->of);
 }
 
-/* The entries of all finer nodes, by their parents in order; those of one node and curve as one. Returns how many. */
+/* The entries of all finer nodes, by their parents in order; those that are alike as one. Returns how many. */
 static int64_t list_entries(const coarse *c, entry *list)
 {
     const tled_problem *p = c->fine;
@@ -67,12 +78,12 @@ static int64_t list_entries(const coarse *c, entry *list)
             continue;
         coarse_parents(c, n, parent);
         for (int32_t i = p->force_start[n]; i < p->force_start[n + 1]; i++)
-            for (int v = 0; v < 8; v++)
-                list[count++] = (entry){parent[v], p->force_curve[i], p->force_spring[i], p->force_share[i] / 8};
+            for (int v = 0; v < 8; v++, count++)
+                list[count] = (entry){parent[v], p->force_curve[i], p->force_spring[i], count, p->force_share[i] / 8};
     }
     qsort(list, (size_t)count, sizeof *list, order);
     for (int64_t i = 0; i < count; i++)
-        if (kept && !order(&list[kept - 1], &list[i]))
+        if (kept && !order_alike(&list[kept - 1], &list[i]))
             list[kept - 1].share += list[i].share;
         else
             list[kept++] = list[i];

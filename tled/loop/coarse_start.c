@@ -49,6 +49,8 @@ static int set_level(run_setup *l, const run_setup *r, const tled_problem *p, er
     const executor *const *table = r->single ? tled_executors_single : tled_executors_double;
     if (support_of(p, &of, e))
         return -1;
+    if (of.loose || of.falling >= 0)
+        return err_set(e, NULL, 0, "nothing holds a part of it, or holds it along some axis");
     *l = (run_setup){.p = p,
                      .device =
                          tled_executor_of(executor_choose(table, r->device->is.device, &need, says, sizeof says, e)),

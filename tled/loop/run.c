@@ -208,7 +208,7 @@ static int begin_log(run *n)
     const run_setup *r = n->r;
     if (r->log && r->point && r->point->log.length)
         return log_resume(r->log, n->device, n->state, run_now(n), &r->point->log, n->e);
-    return run_log_sound(n);
+    return run_log_sound(n, run_due_now(n).row);
 }
 
 /* The first check. A run that goes on from a checkpoint has decided there. */
@@ -243,11 +243,12 @@ static int step_to_next_check(run *n)
         return -1;
     if (run_advance(n, to))
         return -1;
+    const run_due due = run_due_now(n);
     if (to % n->r->check == 0 && decide(n))
         return -1;
-    if (run_log_sound(n))
+    if (run_log_sound(n, due.row))
         return -1;
-    return run_next_frame(n, to - 1) == to ? run_write_frame(n) : 0;
+    return due.frame ? run_write_frame(n) : 0;
 }
 
 /* The last state is always in a frame. */

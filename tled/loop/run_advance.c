@@ -182,12 +182,19 @@ static int log_state(run *n, bool shown)
     return log_read(n->r->log, n->device, n->state, &row, shown, n->e);
 }
 
-int run_log_sound(run *n)
+run_due run_due_now(const run *n)
+{
+    const int64_t at = n->plan.first;
+    const run_log *log = n->r->log;
+    return (run_due){.frame = run_next_frame(n, at - 1) == at,
+                     .row = log && (log->every == 0 || next_row(n, at - 1) == at)};
+}
+
+int run_log_sound(run *n, bool shown)
 {
     run_log *log = n->r->log;
     if (!log)
         return 0;
-    bool shown = log->every == 0 || next_row(n, n->plan.first - 1) == n->plan.first;
     return log_state(n, shown) || log_save(log, n->e) ? -1 : 0;
 }
 
@@ -217,9 +224,10 @@ static int try_step(run *n, bool *sound)
     *sound = run_is_sound(n);
     if (!*sound)
         return 0;
-    if (run_log_sound(n) || run_save(n))
+    const run_due due = run_due_now(n);
+    if (run_log_sound(n, due.row) || run_save(n))
         return -1;
-    return run_next_frame(n, n->plan.first - 1) == n->plan.first ? run_write_frame(n) : 0;
+    return due.frame ? run_write_frame(n) : 0;
 }
 
 /* What lies before `to` is not sound: goes there again step by step, to say where and when it broke, and with the

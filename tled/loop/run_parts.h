@@ -71,9 +71,16 @@ void run_tell_cut(run *n, const monitor_reading *why);
  * log before it. That state is sound, or it has diverged. */
 int run_advance(run *n, int64_t to);
 
-/* Of a state that is sound, as all before it are: writes a frame; adds it to the log, with a row where one is due. */
+/* What is due of the state as it is now. To be asked before a check decides on other steps: seen from those, a multiple
+ * of an interval that an earlier frame or row was of may lie in the step to here. */
+typedef struct run_due {
+    bool frame, row;
+} run_due;
+run_due run_due_now(const run *n);
+
+/* Of a state that is sound, as all before it are: writes a frame; adds it to the log, with a row if it is shown. */
 int run_write_frame(run *n);
-int run_log_sound(run *n);
+int run_log_sound(run *n, bool shown);
 
 /* Saves the state that was monitored last, to go back to; and goes back. */
 int run_save(run *n);
