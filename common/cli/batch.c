@@ -6,14 +6,16 @@
 #include "base/mem.h"
 #include "base/path.h"
 #include "base/pool.h"
+#include "cli/batch_files.h"
+#include "cli/batch_words.h"
 #include "cli/progress.h"
 
-#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
-enum { WORDS = 64, LINE = 65536, ABOUT = 400 }; /* the most words and bytes of a line */
+enum { ABOUT = 400 };
 
 typedef struct job {
     int64_t line;
@@ -21,21 +23,13 @@ typedef struct job {
     bool failed;
 } job;
 
-/* A file that a job reads or writes. */
-typedef struct used {
-    char *where; /* links followed; owned */
-    int64_t line;
-    bool is_written;
-} used;
-
 typedef struct batch {
     const tool *t;
     const batch_use *use;
     const char *path;
     job *job;
     int64_t jobs, job_room;
-    used *file;
-    int64_t files, file_room;
+    batch_files files;
     int threads;
     pthread_mutex_t lock; /* of what follows */
     int64_t done, failed;
@@ -51,91 +45,44 @@ typedef struct ready {
     char about[ABOUT];
 } ready;
 
-/* ---- Lines */
+/* ---- Jobs */
 
-/* Ends a quoted part. Returns what follows it, or NULL. */
-static char *take_quoted(char *from, char **to)
+/* Standard input has the model, standard output is no place for a job, and a pipe's bytes come once, for whichever job
+ * reads them. */
+static int check_file(const opt *o, const char *path, err *e)
 {
-    const char quote = *from++;
-    for (; *from && *from != quote; from++) {
-        if (quote == '"' && from[0] == '\\' && from[1])
-            from++;
-        *(*to)++ = *from;
-    }
-    return *from ? from + 1 : NULL;
-}
-
-/* Takes the word at *from, in place. Returns what follows it, or NULL where a quote has no end. */
-static char *take_word(char *from, char **to)
-{
-    while (from && *from && !chars_blank(*from)) {
-        if (*from == '\'' || *from == '"') {
-            from = take_quoted(from, to);
-            continue;
-        }
-        if (from[0] == '\\' && from[1])
-            from++;
-        *(*to)++ = *from++;
-    }
-    return from;
-}
-
-/* Cuts a line into words, in place. Returns how many, or -1. */
-static int cut(char *text, char *word[WORDS], err *e)
-{
-    int count = 0;
-    for (char *p = text;;) {
-        while (chars_blank(*p))
-            p++;
-        if (!*p || *p == '#')
-            return count;
-        if (count == WORDS)
-            return err_set(e, NULL, 0, "more than %d words on a line", WORDS);
-        char *end = p;
-        word[count++] = p;
-        p = take_word(p, &end);
-        if (!p)
-            return err_set(e, NULL, 0, "a quote has no end; expected another on the line");
-        const bool ends = !*p;
-        *end = '\0';
-        if (ends)
-            return count;
-        p++;
-    }
-}
-
-static int check_text(const char *text, err *e)
-{
-    if (strlen(text) > LINE)
-        return err_set(e, NULL, 0, "a line of %zu bytes; expected at most %d", strlen(text), LINE);
-    for (const char *p = text; *p; p++)
-        if (((unsigned char)*p < 0x20 && *p != '\t') || *p == 0x7f)
-            return err_set(e, NULL, 0, "control character 0x%02x; expected a line of text", (unsigned)*p);
+    struct stat s;
+    char name[64];
+    opt_dashed(o, name);
+    if (!strcmp(path, "-"))
+        return err_set(e, NULL, 0, "%s -; expected the name of a file", name);
+    if (o->flags & OPT_WRITES && path_is_open(path, STDIN_FILENO))
+        return err_set(e, NULL, 0, "%s '%.400s' would overwrite the model on standard input; expected another file",
+                       name, path);
+    if (!(o->flags & OPT_WRITES) && !stat(path, &s) && (S_ISFIFO(s.st_mode) || S_ISSOCK(s.st_mode)))
+        return err_set(e, NULL, 0, "%s '%.400s' is a pipe; expected a file", name, path);
     return 0;
 }
 
-/* ---- Jobs */
-
-/* Checks that a job names its files: standard input has the model, and standard output is no place for a job. */
 static int check_files(const tool *t, err *e)
 {
     const opt *o;
-    const char *output = t->common->output;
-    if (!output)
+    if (!t->common->output)
         return err_set(e, NULL, 0, "a job without -o; expected -o FILE, for its result");
     for (int i = 0; (o = opt_at(t->table, i)); i++) {
         const char *path = o->flags & OPT_JOB ? tool_file(t, o) : NULL;
-        if (path && !strcmp(path, "-"))
-            return err_set(e, NULL, 0, "--%s -; expected the name of a file", o->name);
+        if (path && check_file(o, path, e))
+            return -1;
     }
     return 0;
 }
 
 static int take_options(const batch *b, ready *r, err *e)
 {
-    char *word[WORDS + 2] = {r->text}; /* the first is none of the words */
-    const int count = cut(r->text, word + 1, e);
-    if (count < 0 || opt_parse_job(b->t->table, count + 1, word, r->options, e) < 0 || b->use->check(r->options, e))
+    char *word[BATCH_WORDS + 2] = {r->text}; /* the first is none of the words */
+    const int count = batch_words_cut(r->text, word + 1, e);
+    if (count < 0 || opt_parse_job(b->t->table, count + 1, word, r->options, b->use->defaults, e) < 0 ||
+        b->use->check(r->options, e))
         return -1;
     opt_common *common = r->options;
     common->quiet = common->quiet || !common->verbose;
@@ -161,7 +108,7 @@ static int make_ready(const batch *b, const job *j, ready *r, err *e)
     if (!r->text || !r->options)
         return -1;
     memcpy(r->options, b->use->given, b->use->size);
-    return check_text(j->text, e) || take_options(b, r, e) ? -1 : 0;
+    return batch_words_check(j->text, e) || take_options(b, r, e) ? -1 : 0;
 }
 
 static void release(ready *r)
@@ -183,77 +130,6 @@ static void say_failed(batch *b, job *j, const err *why)
     j->failed = true;
     b->failed++;
     pthread_mutex_unlock(&b->lock);
-}
-
-/* ---- Files of several jobs */
-
-/* Where a file is, or would be. */
-static char *where(const char *path, err *e)
-{
-    char real[PATH_MAX];
-    err ignored = {0};
-    char *target = path_target(path, &ignored);
-    const char *of = target ? target : path;
-    const size_t n = path_folder(of);
-    char *folder = n ? path_join(of, n, "", e) : path_join(".", 1, "", e), *to = NULL;
-    if (folder && realpath(folder, real)) {
-        const size_t size = strlen(real) + strlen(of + n) + 2;
-        to = mem_array((int64_t)size, 1, "a path", e);
-        if (to)
-            snprintf(to, size, "%s/%s", real, of + n);
-    } else if (folder) {
-        to = mem_text(of, e);
-    }
-    free(folder);
-    free(target);
-    return to;
-}
-
-static int note_file(batch *b, const char *path, int64_t line, bool is_written, err *e)
-{
-    if (MEM_ROOM(&b->file, &b->file_room, b->files + 1, "the jobs' files", e))
-        return -1;
-    used *f = &b->file[b->files];
-    *f = (used){where(path, e), line, is_written};
-    b->files += f->where != NULL;
-    return f->where ? 0 : -1;
-}
-
-static int note_files(batch *b, const job *j, const ready *r, err *e)
-{
-    const opt *o;
-    for (int i = 0; (o = opt_at(b->t->table, i)); i++) {
-        const char *path = o->flags & OPT_JOB ? tool_file(&r->t, o) : NULL;
-        if (path && note_file(b, path, j->line, o->flags & OPT_WRITES, e))
-            return -1;
-    }
-    return 0;
-}
-
-static int by_place(const void *a, const void *b)
-{
-    const used *x = a, *y = b;
-    const int places = strcmp(x->where, y->where);
-    return places ? places : (x->line > y->line) - (x->line < y->line);
-}
-
-/* Refuses a file that one job writes and another job writes or reads. */
-static int check_shared(batch *b, err *e)
-{
-    if (b->files)
-        qsort(b->file, (size_t)b->files, sizeof *b->file, by_place);
-    for (int64_t i = 1, first = 0; i < b->files; i++) {
-        const used *f = &b->file[i], *before = &b->file[first];
-        if (strcmp(f->where, before->where) != 0) {
-            first = i;
-            continue;
-        }
-        if (f->line != before->line && (f->is_written || before->is_written))
-            return err_set(e, b->path, f->line, "%s '%.400s', which the job of line %lld %s; expected another file",
-                           f->is_written ? "writes" : "reads", f->where, (long long)before->line,
-                           before->is_written ? "writes" : "reads");
-    }
-    return 0;
 }
 
 /* ---- All of them */
@@ -289,6 +165,17 @@ static int read_lines(batch *b, err *e)
     return b->jobs ? 0 : err_set(e, b->path, 0, "no job; expected lines of options, each with -o FILE");
 }
 
+static int note_files(batch *b, const job *j, const ready *r, err *e)
+{
+    const opt *o;
+    for (int i = 0; (o = opt_at(b->t->table, i)); i++) {
+        const char *path = o->flags & OPT_JOB ? tool_file(&r->t, o) : NULL;
+        if (path && batch_files_note(&b->files, path, j->line, o->flags & OPT_WRITES, e))
+            return -1;
+    }
+    return 0;
+}
+
 /* Looks at a line before any job runs. -1 with e filled where the batch cannot go on. */
 static int look(batch *b, job *j, err *e)
 {
@@ -301,6 +188,23 @@ static int look(batch *b, job *j, err *e)
         failed = note_files(b, j, &r, e);
     release(&r);
     return failed;
+}
+
+/* At all of them: what is wrong with a line by itself, then with its files beside those of the lines before. */
+static int look_at_all(batch *b, err *e)
+{
+    for (int64_t i = 0; i < b->jobs; i++)
+        if (look(b, &b->job[i], e))
+            return -1;
+    if (batch_files_sort(&b->files, e))
+        return -1;
+    for (int64_t i = 0; i < b->jobs; i++) {
+        err why = {0};
+        if (!b->job[i].failed && batch_files_take(&b->files, b->job[i].line, &why))
+            say_failed(b, &b->job[i], &why);
+    }
+    batch_files_free(&b->files);
+    return 0;
 }
 
 static void say_done(batch *b, const ready *r, const char *said, double took)
@@ -372,10 +276,8 @@ static void free_all(batch *b)
 {
     for (int64_t i = 0; i < b->jobs; i++)
         free(b->job[i].text);
-    for (int64_t i = 0; i < b->files; i++)
-        free(b->file[i].where);
     free(b->job);
-    free(b->file);
+    batch_files_free(&b->files);
     notes_free(&b->told.lines);
     pthread_mutex_destroy(&b->told.lock);
     pthread_mutex_destroy(&b->lock);
@@ -386,10 +288,7 @@ int batch_go(const tool *t, const char *path, const batch_use *use, err *e)
     batch b = {.t = t, .use = use, .path = path, .threads = 1};
     pthread_mutex_init(&b.lock, NULL);
     pthread_mutex_init(&b.told.lock, NULL);
-    int failed = read_lines(&b, e);
-    for (int64_t i = 0; !failed && i < b.jobs; i++)
-        failed = look(&b, &b.job[i], e);
-    failed = failed || check_shared(&b, e) || do_all(&b, e);
+    const int failed = read_lines(&b, e) || look_at_all(&b, e) || do_all(&b, e) ? -1 : 0;
     free_all(&b);
-    return failed ? -1 : 0;
+    return failed;
 }

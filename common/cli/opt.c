@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { MODELS = 1 << 9, THREADED = 1 << 10, VOLUMES = 1 << 11 };
+enum { MODELS = 1 << 12, THREADED = 1 << 13, VOLUMES = 1 << 14 };
 
 #define OUTPUT (OPT_OUTPUT | OPT_FILE | OPT_WRITES | OPT_JOB)
 
@@ -118,6 +118,15 @@ static const opt *find_name(const opt_tool *tool, const char *name, size_t lengt
     else
         unknown_option(tool, name, length, e);
     return NULL;
+}
+
+const char *opt_dashed(const opt *o, char to[64])
+{
+    if (o->name && strcmp(o->name, "output") != 0)
+        snprintf(to, 64, "--%s", o->name);
+    else
+        snprintf(to, 64, "-%c", o->letter);
+    return to;
 }
 
 static int bad_value(const opt *o, const char *text, const char *expected, err *e)
@@ -266,8 +275,10 @@ typedef struct scan {
     int argc, at;
     char **argv;
     void *options;
-    uint64_t seen; /* bit i: option i was given */
-    bool is_job;
+    uint64_t seen;        /* bit i: option i was given */
+    bool is_job;          /* of --batch */
+    const void *defaults; /* of its options */
+    bool has_either;      /* it has one of OPT_EITHER */
 } scan;
 
 static void mark_seen(scan *s, const opt *o)
@@ -278,13 +289,68 @@ static void mark_seen(scan *s, const opt *o)
             s->seen |= UINT64_C(1) << i;
 }
 
+static int refuse_in_job(const opt *o, err *e)
+{
+    char name[64];
+    return err_usage(e,
+                     o->flags & OPT_ALONE ? "a job with %s; expected a run without --batch for that"
+                                          : "a job with %s; expected it on the command line, for all jobs",
+                     opt_dashed(o, name));
+}
+
+/* With --batch. */
+static int refuse_for_all(const opt *o, err *e)
+{
+    char name[64];
+    return err_usage(e,
+                     o->flags & OPT_ALONE ? "%s with --batch; expected one of them"
+                                          : "%s with --batch; expected it in the lines of jobs",
+                     opt_dashed(o, name));
+}
+
+static int check_batch(const scan *s, err *e)
+{
+    const opt *o;
+    int count;
+    const opt *batch = look_up(s->tool, "batch", strlen("batch"), &count);
+    bool is_batch = false;
+    for (int i = 0; i < 64 && (o = opt_at(s->tool, i)); i++)
+        is_batch = is_batch || (o == batch && s->seen >> i & 1);
+    for (int i = 0; is_batch && i < 64 && (o = opt_at(s->tool, i)); i++)
+        if (s->seen >> i & 1 && (o->flags & OPT_ALONE || (o->flags & OPT_JOB && o->flags & OPT_WRITES)))
+            return refuse_for_all(o, e);
+    if (is_batch && !strcmp(*(const char *const *)((const char *)s->options + batch->to), "-"))
+        return err_usage(e, "--batch -: standard input has the model; expected the name of a file");
+    return 0;
+}
+
+static size_t size_of(const opt *o)
+{
+    static const size_t sizes[] = {
+        [OPT_FLAG] = sizeof(bool),           [OPT_TEXT] = sizeof(const char *), [OPT_INT] = sizeof(int64_t),
+        [OPT_SIZE] = sizeof(int64_t),        [OPT_NUMBER] = sizeof(double),     [OPT_LENGTHS] = sizeof(opt_lengths),
+        [OPT_NUMBERS] = sizeof(opt_numbers), [OPT_CHOICE] = sizeof(int),        [OPT_LIST] = sizeof(opt_list)};
+    return sizes[o->kind];
+}
+
+/* Takes back those of OPT_EITHER that the command line has. */
+static void forget_either(scan *s)
+{
+    const opt *o;
+    for (int i = 0; !s->has_either && (o = opt_at(s->tool, i)); i++)
+        if (o->flags & OPT_EITHER)
+            memcpy((char *)s->options + o->to, (const char *)s->defaults + o->to, size_of(o));
+    s->has_either = true;
+}
+
 /* value: what is joined to the option, or NULL to take the next word. */
 static int take(scan *s, const opt *o, const char *value, err *e)
 {
     mark_seen(s, o);
     if (s->is_job && !(o->flags & OPT_JOB))
-        return o->name ? err_usage(e, "a job with --%s; expected it on the command line, for all jobs", o->name)
-                       : err_usage(e, "a job with -%c; expected it on the command line, for all jobs", o->letter);
+        return refuse_in_job(o, e);
+    if (s->is_job && o->flags & OPT_EITHER)
+        forget_either(s);
     if (o->kind != OPT_FLAG && !value) {
         if (s->at + 1 >= s->argc)
             return err_usage(e, "%s needs a value: %s", s->argv[s->at], o->arg);
@@ -371,7 +437,7 @@ static int parse(scan s, err *e)
     }
     if (common->help || common->version || common->table)
         return operands;
-    return check_required(&s, operands, e) ? -1 : operands;
+    return check_required(&s, operands, e) || check_batch(&s, e) ? -1 : operands;
 }
 
 int opt_parse(const opt_tool *tool, int argc, char **argv, void *options, err *e)
@@ -379,7 +445,8 @@ int opt_parse(const opt_tool *tool, int argc, char **argv, void *options, err *e
     return parse((scan){.tool = tool, .argc = argc, .argv = argv, .options = options}, e);
 }
 
-int opt_parse_job(const opt_tool *tool, int argc, char **argv, void *options, err *e)
+int opt_parse_job(const opt_tool *tool, int argc, char **argv, void *options, const void *defaults, err *e)
 {
-    return parse((scan){.tool = tool, .argc = argc, .argv = argv, .options = options, .is_job = true}, e);
+    return parse(
+        (scan){.tool = tool, .argc = argc, .argv = argv, .options = options, .is_job = true, .defaults = defaults}, e);
 }

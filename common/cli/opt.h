@@ -57,6 +57,8 @@ enum {
     OPT_WRITES = 16,  /* its text names a file, or files by a number in it, that are written: nothing else may be */
     OPT_ALSO = 32,    /* another name of the option before it, with the same `to`: left out of the synopsis */
     OPT_JOB = 128,    /* a job of --batch may have it (cli/batch.h) */
+    OPT_ALONE = 256,  /* not with --batch, neither for all jobs nor for one */
+    OPT_EITHER = 512, /* of those with this, a job's line has all or none: it replaces what the command line has */
     OPT_NAMED =
         64 /* its text is NAME=VALUE, or NAME:VALUE; one that ends in .obj or .obj.gz is a file, as with OPT_FILE */
 };
@@ -106,11 +108,12 @@ typedef struct opt_tool {
  *
  * Parses argv into options (with its defaults set by the caller) and moves the operands to the front of argv, from
  * argv[1]. Returns the count of operands, or -1 with e filled (status 2). With -h, -V or --table, nothing more is
- * required. */
+ * required. With --batch, what is said in the lines of jobs, as -o, and what is OPT_ALONE, is refused. */
 int opt_parse(const opt_tool *tool, int argc, char **argv, void *options, err *e);
 
-/* The same for the words of a job, from argv[1] on: only options that jobs may have, over those of the command line. */
-int opt_parse_job(const opt_tool *tool, int argc, char **argv, void *options, err *e);
+/* The same for the words of a job, from argv[1] on: only options that jobs may have, over those of the command line.
+ * defaults: the options where nothing is given. */
+int opt_parse_job(const opt_tool *tool, int argc, char **argv, void *options, const void *defaults, err *e);
 
 /* Sets one option by its long name, as the command line does: for values that change while a tool runs. The text must
  * last as long as the options. -1 with e filled, and that option's value may be lost. */
@@ -123,6 +126,9 @@ int opt_choice(const char *choices, const char *word);
  * are its own. */
 const opt *opt_at(const opt_tool *tool, int i);
 int opt_own(const opt_tool *tool);
+
+/* An option as messages name it: "-o", "--log". */
+const char *opt_dashed(const opt *o, char to[64]);
 
 /* How people call the tool: "sinew bind". */
 const char *opt_command(const opt_tool *tool);

@@ -99,16 +99,6 @@ static int refuse(const char *option, const char *path, const char *what, const 
     return -1;
 }
 
-/* "-o", "--log". */
-static const char *option_name(const opt *o, char to[64])
-{
-    if (o->name && strcmp(o->name, "output") != 0)
-        snprintf(to, 64, "--%s", o->name);
-    else
-        snprintf(to, 64, "-%c", o->letter);
-    return to;
-}
-
 const char *tool_file(const tool *t, const opt *o)
 {
     const char *text = o->kind == OPT_TEXT ? *(const char *const *)((const char *)t->common + o->to) : NULL;
@@ -141,7 +131,7 @@ int tool_check_written(const tool *t, const char *option, const char *path, err 
         if (path_is_same(path, t->operand[i]))
             return refuse(option, path, "what is read,", t->operand[i], e);
     for (int i = 0; (o = opt_at(t->table, i)); i++) {
-        const char *other = strcmp(option_name(o, name), option) != 0 ? tool_file(t, o) : NULL;
+        const char *other = strcmp(opt_dashed(o, name), option) != 0 ? tool_file(t, o) : NULL;
         snprintf(what, sizeof what, "the file of %s", name);
         if (other && path_is_same(path, other))
             return refuse(option, path, what, other, e);
@@ -155,7 +145,7 @@ static int check_written(const tool *t, err *e)
     const opt *o;
     for (int i = 0; (o = opt_at(t->table, i)); i++) {
         const char *path = o->flags & OPT_WRITES ? tool_file(t, o) : NULL;
-        if (path && tool_check_written(t, option_name(o, name), path, e))
+        if (path && tool_check_written(t, opt_dashed(o, name), path, e))
             return -1;
     }
     return 0;

@@ -81,17 +81,47 @@ cmp -s one last && [ ! -e two ] && [ ! -e three ] && [ ! -e four ] && [ ! -e six
 is $? 0 "the other jobs are done, and those leave nothing"
 is "$(sed -n 's/^tled-run: jobs.txt:\([0-9]*\): .*/\1/p' said | sort -n | tr '\n' ' ')$(tail -1 said)" "2 3 4 5 6 7 8 9 10 11 12 13 tled-run: jobs.txt: 12 of 14 jobs failed" "each says its line"
 for words in '2: a job without -o' "3: -c: unknown muscle 'nose'" '4: none.script: cannot open' "5: broken.script:1: " '6: none/five: cannot create' \
-    '7: a job with --device' '8: --output -' '9: a quote has no end' "10: extra operand 'a=0.1'" '11: --script -' '12: folder: ' '13: -.* .one.log. would overwrite'; do
+    '7: a job with --device' '8: -o -' '9: a quote has no end' "10: extra operand 'a=0.1'" '11: --script -' '12: folder: ' '13: -.* .one.log. would overwrite'; do
     like "$(cat said)" "jobs.txt:$words" "line $words"
 done
-printf -- '-c a=0.1 -o same\n-c a=0.05 -o new\n-c a=0.3 -o ./folder/../same\n' >jobs.txt
+# ---- Files of several jobs: the later line is wrong
+printf '0 a 0\n' >calm.script
+printf '#\n-c a=0.1 -o same\n-c a=0.05 -o new\n-c a=0.3 -o ./folder/../same --log rest.tsv\n--script new -o next\n-c a=0.2 -o rest.tsv\n--script calm.script -o read\n-c a=0.1 -o calm.script\n-t never -o other\n-c a=0.1 -o other\n-c a=0.1 -o /dev/null\n-c a=0.2 -o /dev/null\n' >jobs.txt
+rm -f same new
 $run --batch jobs.txt <ball 2>said
-is "$? $(find . -name same -o -name new | wc -l)" "1 0" "two jobs with one output: nothing is done"
-like "$(cat said)" "jobs.txt:3: writes '.*/same', which the job of line 1 writes; expected another file" "and they are named"
-printf -- '-c a=0.1 -o new\n--script new -o next\n' >jobs.txt
+is "$? $(cat next read 2>/dev/null | wc -c) $(cat calm.script)" "1 0 0 a 0" "jobs with the files of others fail"
+is "$(sed -n 's/^tled-run: jobs.txt:\([0-9]*\): .*/\1/p' said | sort -n | tr '\n' ' ')$(tail -1 said)" "4 5 7 8 9 tled-run: jobs.txt: 5 of 11 jobs failed" "they alone"
+cmp -s same first && [ -e new ] && [ -e rest.tsv ] && [ -e other ]
+is $? 0 "the others are done, also with a file of one that failed"
+for words in "4: writes '.*/same', which the job of line 2 writes; expected another file" "5: reads '.*/new', which the job of line 3 writes"; do
+    like "$(cat said)" "jobs.txt:$words" "line $words"
+done
+printf -- '--script calm.script -o one\n-c a=0.1 -o calm.script\n' >jobs.txt
 $run --batch jobs.txt <ball 2>said
-is "$?" 1 "a job that reads what another writes is refused"
-like "$(cat said)" "jobs.txt:2: reads '.*/new', which the job of line 1 writes" "by name"
+like "$? $(cat said)" "1 .*jobs.txt:2: writes '.*/calm.script', which the job of line 1 reads" "a job that writes what one before it reads"
+cp ball model
+ln -s model linked
+mkfifo pipe
+printf -- '-c a=0.1 -o linked\n-c a=0.1 -o jobs.txt\n--script calm.script -o calm.script\n--script pipe -o one\n' >jobs.txt
+cp jobs.txt before
+$run --batch jobs.txt <model 2>said
+is "$? $(cmp model ball) $(cmp jobs.txt before)" "1  " "the model and the jobs are not written over"
+for words in "1: -o 'linked' would overwrite the model on standard input; expected another file" "2: -o 'jobs.txt' would overwrite the file of --batch 'jobs.txt'" \
+    "3: -o 'calm.script' would overwrite the file of --script 'calm.script'" "4: --script 'pipe' is a pipe; expected a file"; do
+    like "$(cat said)" "jobs.txt:$words" "line $words"
+done
+
+# ---- How a run ends: a line's way stands for that of the command line
+printf -- '-c a=0.1 -o steps -n 3\n-c a=0.1 -o time -t 0.01\n-c a=0.1 -o both -n 3 -t 1\n--rest 0.1 -g 1,0,0 -o rest\n-c a=0.1 -o asked\n' >jobs.txt
+tled-run -q -d cpu -t 0.02 --batch jobs.txt <ball 2>said
+is "$? $(cat said)" "1 tled-run: jobs.txt:3: -t, -n and --rest are three ways to end; expected one of them
+tled-run: jobs.txt: 1 of 5 jobs failed" "two ways to end in one line are refused"
+tled-run -q -d cpu -c a=0.1 -n 3 <ball >apart1
+tled-run -q -d cpu -c a=0.1 -t 0.01 <ball >apart2
+tled-run -q -d cpu --rest 0.1 -g 1,0,0 <ball >apart3
+tled-run -q -d cpu -c a=0.1 -t 0.02 <ball >apart4
+cmp -s steps apart1 && cmp -s 'time' apart2 && cmp -s rest apart3 && cmp -s asked apart4
+is $? 0 "-n, -t and --rest of a line stand for -t of the command line"
 for empty in '' '# nothing
 
 '; do
@@ -99,6 +129,12 @@ for empty in '' '# nothing
     $run --batch jobs.txt <ball 2>said
     is "$? $(cat said)" "1 tled-run: jobs.txt: no job; expected lines of options, each with -o FILE" "a file without jobs"
 done
+printf -- '-c a=0.1 -o one --live\n-c a=0.1 -o one -m tissue.E=1\n-c a=0.1 -o one --batch jobs.txt\n' >jobs.txt
+$run --batch jobs.txt <ball 2>said
+is "$(cat said)" "tled-run: jobs.txt:1: a job with --live; expected a run without --batch for that
+tled-run: jobs.txt:2: a job with --material; expected it on the command line, for all jobs
+tled-run: jobs.txt:3: a job with --batch; expected it on the command line, for all jobs
+tled-run: jobs.txt: 3 of 3 jobs failed" "options that no job has, with the reason"
 # What tears the tissue, where steps are fixed.
 printf -- '-c a=0.1 -o calm\n-g 0,0,-1e9 --ramp 0 -o torn\n' >jobs.txt
 rm -f torn

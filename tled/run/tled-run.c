@@ -545,10 +545,9 @@ static int run_job(void *context, tool *t, void *options, char said[BATCH_SAID],
 static int run_batch(const tool *t, struct options *o, err *e)
 {
     tled_batch b = {.base = {.t = t}};
-    const batch_use use = {sizeof *o, o, check_job, run_job, &b};
-    const int failed = tled_batch_check(o, e) || stage_read(&b.base.stage, &b.base.m, e) ||
-                               change_materials(&b.base, o, e) || tled_batch_read(&b, o, e) ||
-                               batch_go(t, o->batch, &use, e)
+    const batch_use use = {sizeof *o, &options_defaults, o, check_job, run_job, &b};
+    const int failed = stage_read(&b.base.stage, &b.base.m, e) || change_materials(&b.base, o, e) ||
+                               tled_batch_read(&b, o, e) || batch_go(t, o->batch, &use, e)
                            ? -1
                            : 0;
     tled_batch_free(&b);

@@ -5,32 +5,6 @@
 #include <stdio.h>
 #include <string.h>
 
-int tled_batch_check(const struct options *o, err *e)
-{
-    const struct {
-        bool given;
-        const char *name;
-        bool of_job;
-    } other[] = {{o->common.output != NULL, "-o", true},
-                 {o->live, "--live", false},
-                 {o->lines != NULL, "--control", false},
-                 {o->replay != NULL, "--replay", false},
-                 {o->record != NULL, "--record", false},
-                 {o->force, "--force", false},
-                 {o->rate >= 0, "--rate", false},
-                 {o->checkpoint != NULL, "--checkpoint", false},
-                 {o->checkpoint_every > 0, "--checkpoint-every", false},
-                 {o->restart != NULL, "--restart", false},
-                 {o->log != NULL, "--log", true}};
-    for (size_t i = 0; i < sizeof other / sizeof *other; i++)
-        if (other[i].given)
-            return err_usage(e, "%s with --batch; expected %s", other[i].name,
-                             other[i].of_job ? "it in the lines of jobs" : "one of them");
-    if (!strcmp(o->batch, "-"))
-        return err_usage(e, "--batch -: standard input has the model; expected the name of a file");
-    return 0;
-}
-
 int tled_batch_read(tled_batch *b, const struct options *o, err *e)
 {
     b->changed = o->materials || o->material.count;

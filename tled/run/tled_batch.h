@@ -16,9 +16,6 @@ typedef struct tled_batch {
     pthread_mutex_t card; /* one job at a time computes on a card */
 } tled_batch;
 
-/* Refuses options that make no sense for several jobs. -1 with e filled (status 2). */
-int tled_batch_check(const struct options *o, err *e);
-
 /* Reads the model's frames, to the end of the stream. -1 with e filled. */
 int tled_batch_read(tled_batch *b, const struct options *o, err *e);
 void tled_batch_free(tled_batch *b);
