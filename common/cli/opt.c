@@ -29,9 +29,11 @@ static const opt common_options[] = {
      "most memory for volumes, e.g. 2GB [default any]"},
     {OPT_COMMON, 'q', "quiet", NULL, OPT_FLAG, COMMON(quiet), 0, 0, NULL, OPT_OUTPUT, "print only warnings and errors"},
     {OPT_COMMON, 'v', "verbose", NULL, OPT_FLAG, COMMON(verbose), 0, 0, NULL, OPT_OUTPUT, "print more"},
-    {OPT_COMMON, 'h', "help", NULL, OPT_FLAG, COMMON(help), 0, 0, NULL, OPT_OUTPUT, "print this help"},
-    {OPT_COMMON, 'V', "version", NULL, OPT_FLAG, COMMON(version), 0, 0, NULL, OPT_OUTPUT, "print the version"},
-    {OPT_COMMON, 0, "table", "mdoc|bash|zsh", OPT_TEXT, COMMON(table), 0, 0, NULL, OPT_OUTPUT | OPT_HIDDEN, "for make"},
+    {OPT_COMMON, 'h', "help", NULL, OPT_FLAG, COMMON(help), 0, 0, NULL, OPT_OUTPUT | OPT_ALONE, "print this help"},
+    {OPT_COMMON, 'V', "version", NULL, OPT_FLAG, COMMON(version), 0, 0, NULL, OPT_OUTPUT | OPT_ALONE,
+     "print the version"},
+    {OPT_COMMON, 0, "table", "mdoc|bash|zsh", OPT_TEXT, COMMON(table), 0, 0, NULL, OPT_OUTPUT | OPT_HIDDEN | OPT_ALONE,
+     "for make"},
     {0}};
 
 static bool is_end(const opt *o)

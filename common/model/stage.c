@@ -40,6 +40,11 @@ int stage_read(stage *s, model *m, err *e)
     return s->reader ? model_read(s->reader, m, e) : -1;
 }
 
+const char *stage_name(const stage *s)
+{
+    return s->source ? in_name(s->source) : "stdin";
+}
+
 static int add_provenance(stage *s, model *m, err *e)
 {
     if (s->has_provenance)
@@ -180,32 +185,6 @@ int64_t stage_last_frame(stage *s, const model *m, bool copied, frame *last, err
     return pass_frames(s, m, copied ? s->writer : NULL, last, e);
 }
 
-int64_t stage_keep_frames(stage *s, const model *m, frame **list, err *e)
-{
-    int64_t count = 0, room = 0;
-    for (;;) {
-        frame f = {0};
-        const int got = model_read_frame(s->reader, m, &f, e);
-        if (got > 0 && !MEM_ROOM(list, &room, count + 1, "the frames", e)) {
-            (*list)[count++] = f;
-            continue;
-        }
-        frame_free(&f);
-        if (!got && !e->status)
-            return count;
-        stage_free_frames(*list, count);
-        *list = NULL;
-        return -1;
-    }
-}
-
-void stage_free_frames(frame *list, int64_t count)
-{
-    for (int64_t i = 0; i < count; i++)
-        frame_free(&list[i]);
-    free(list);
-}
-
 int stage_drop_frames(stage *s, const model *m, notes *warnings, err *e)
 {
     (void)m; /* it may have changed: what is dropped need only fit the model that came in */
@@ -265,4 +244,40 @@ void stage_close_input(stage *s)
     model_reader_close(s->reader);
     in_close(s->source);
     *s = (stage){0};
+}
+
+/* ---- One model for several */
+
+int stage_shared_read(stage_shared *s, err *e)
+{
+    int64_t room = 0;
+    int got;
+    do {
+        frame f = {0};
+        got = model_read_frame(s->stage.reader, &s->m, &f, e);
+        if (got > 0 && MEM_ROOM(&s->frame, &room, s->frames + 1, "the frames", e))
+            got = -1;
+        if (got > 0)
+            s->frame[s->frames++] = f;
+        else
+            frame_free(&f);
+    } while (got > 0);
+    return got;
+}
+
+int stage_shared_lend(const stage_shared *s, stage *to, model *m, err *e)
+{
+    to->kept = s->frames ? s->frame : NULL;
+    to->kept_count = s->frames;
+    return model_share(m, &s->m, e);
+}
+
+void stage_shared_free(stage_shared *s)
+{
+    for (int64_t i = 0; i < s->frames; i++)
+        frame_free(&s->frame[i]);
+    free(s->frame);
+    stage_close_input(&s->stage);
+    model_free(&s->m);
+    *s = (stage_shared){.frames = 0};
 }

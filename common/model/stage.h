@@ -31,6 +31,9 @@ int stage_open_output(stage *s, const tool *t, err *e);
 /* Reads the model on stdin. A terminal there is a usage error (status 2). */
 int stage_read(stage *s, model *m, err *e);
 
+/* The name of the stream that the model came from, for messages; in a job of --batch, that of all jobs. */
+const char *stage_name(const stage *s);
+
 /* Appends the tool's provenance to m and writes it. */
 int stage_write(stage *s, model *m, err *e);
 
@@ -57,11 +60,6 @@ int stage_copy_frames(stage *s, const model *m, err *e);
  * *last, zeroed before and the caller's to free; or -1 with e filled. */
 int64_t stage_last_frame(stage *s, const model *m, bool copied, frame *last, err *e);
 
-/* Reads the frames that are left, all of them, into *list, for other stages: zeroed before, and the caller's to free
- * (stage_free_frames). Returns how many, or -1 with e filled. */
-int64_t stage_keep_frames(stage *s, const model *m, frame **list, err *e);
-void stage_free_frames(frame *list, int64_t count);
-
 /* Reads the frames that are left and drops them, noting how many. */
 int stage_drop_frames(stage *s, const model *m, notes *warnings, err *e);
 
@@ -71,5 +69,25 @@ void stage_close(stage *s, const tool *t, err *e);
 
 /* Closes one that has no output. */
 void stage_close_input(stage *s);
+
+/* ---- One model for several */
+
+/* The model on stdin, and the frames that came with it, for the jobs of --batch: each has a stage and a model of its
+ * own, in which the numbers are these. Jobs read them and change nothing of them. The main owns it, zeroed to begin
+ * with. */
+typedef struct stage_shared {
+    stage stage;
+    model m;
+    frame *frame; /* frames; owned */
+    int64_t frames;
+} stage_shared;
+
+/* Reads the frames of a model that has come (stage_read), to the end of the stream. -1 with e filled. */
+int stage_shared_read(stage_shared *s, err *e);
+
+/* Gives a job's stage the frames, and its model, zeroed, what is in this one. -1 with e filled. */
+int stage_shared_lend(const stage_shared *s, stage *to, model *m, err *e);
+
+void stage_shared_free(stage_shared *s);
 
 #endif

@@ -125,20 +125,27 @@ static void warn_of_bone(session *s)
                   (long long)s->stopped, (long long)s->posed, s->stopped_first);
 }
 
-void frame_report_end(session *s)
+void frame_report_words(const session *s, char *to, size_t size)
 {
     char force[200] = "";
     const peak *u = &s->moved, *f = &s->pushed;
-    warn_of_misses(s);
-    warn_of_bone(s);
-    inverted_warn(&s->inverted, s->posed, methods_words[s->used], &s->warnings);
     if (f->value > 0)
         snprintf(force, sizeof force, "; largest force on the probe %.4g N, from %lld node%s, at %.6g s", f->value,
                  (long long)f->contacts, f->contacts == 1 ? "" : "s", f->time);
     else if (s->o->probe)
         snprintf(force, sizeof force, "; no force on the probe");
-    tool_say(s->t, "%lld pose%s, to %.6g s: largest displacement %.6g mm, at %.6g s%s", (long long)s->posed,
+    snprintf(to, size, "%lld pose%s, to %.6g s: largest displacement %.6g mm, at %.6g s%s", (long long)s->posed,
              s->posed == 1 ? "" : "s", s->time, 1e3 * u->value, u->time, force);
+}
+
+void frame_report_end(session *s)
+{
+    char text[FRAME_REPORT_WORDS];
+    warn_of_misses(s);
+    warn_of_bone(s);
+    inverted_warn(&s->inverted, s->posed, methods_words[s->used], &s->warnings);
+    frame_report_words(s, text, sizeof text);
+    tool_say(s->t, "%s", text);
     say_cavities(s);
 }
 

@@ -14,6 +14,10 @@ void frame_report_row(session *s);
 /* Warns of what the first pose shows of the probe, and where it enters tissue at once; line: of the pose, or 0. */
 void frame_report_pose(session *s, const pose *at, int64_t line, const press_moves *moves, bool first);
 
+/* The largest values of all frames, in a line. */
+enum { FRAME_REPORT_WORDS = 400 };
+void frame_report_words(const session *s, char *to, size_t size);
+
 /* Of all frames: what touched nothing, and the largest values. */
 void frame_report_end(session *s);
 

@@ -8,7 +8,7 @@ struct options {
     opt_common common;
     int device, method, mass, contact;
     bool exact, warp, residual, compare, live, force;
-    const char *body, *marker, *control, *record, *replay, *haptics;
+    const char *body, *marker, *control, *record, *replay, *haptics, *batch;
     const char *probe, *unit, *poses, *transform, *scale;
     int64_t iterations;
     double dt, damping, repulsion, friction, rate, skin_stiffness, skin_anchors, skin_tension;
@@ -18,5 +18,6 @@ struct options {
 };
 
 extern const opt_tool run_options_table;
+extern const struct options run_options_defaults;
 
 #endif

@@ -158,7 +158,7 @@ static int choose_frames(session *s, err *e)
 /* Of a record it is told first whether it is one of this model at all. */
 static int follow(session *s, const frame *last, err *e)
 {
-    const char *where = in_name(s->stage.source);
+    const char *where = stage_name(&s->stage);
     if (!s->o->replay)
         return frame_choice_follow(&s->frames, last, where, e);
     frame_choice_follow(&s->frames, last, where, &s->unfit);
@@ -377,13 +377,21 @@ int session_change(session *s, session_part part, err *e)
     return 0;
 }
 
+void session_leave(session *s)
+{
+    compare_free(s->other, s->device);
+    if (s->state)
+        s->device->destroy(s->state);
+    skin_free(&s->skin);
+    s->other = NULL;
+    s->state = NULL;
+}
+
 void session_free(session *s)
 {
     executor_ahead_end(&s->ahead);
     broadcast_close(s->socket);
-    compare_free(s->other, s->device);
-    if (s->state)
-        s->device->destroy(s->state);
+    session_leave(s);
     frame_nodes_free(&s->of_nodes);
     frame_choice_free(&s->frames);
     inverted_free(&s->inverted);
@@ -392,7 +400,6 @@ void session_free(session *s)
     for (int i = 0; i < SESSION_TEXTS; i++)
         free(s->text[i]);
     press_free(&s->press);
-    skin_free(&s->skin);
     body_free(&s->around);
     msds_problem_free(&s->problem);
     probe_free(&s->probe);

@@ -58,6 +58,7 @@ typedef struct session {
     bool springs_told;
     const msds_executor *device;
     executor_ahead ahead;
+    pthread_mutex_t *card; /* of a job of --batch: one at a time computes on a card; NULL: no such job */
     pool *threads;
     msds_state *state;
     frame_queue *queue;  /* of frames on their way out */
@@ -113,6 +114,9 @@ int session_start(session *s, err *e);
 /* Waits until all frames are written, and tells (-v) how long they took, where the run has ended well. -1 with e filled
  * where one could not be. */
 int session_finish(session *s, bool ended, err *e);
+
+/* Gives back what the run has on the device. */
+void session_leave(session *s);
 
 /* Takes over the options, of which some of one part have changed, from the next frame on. */
 int session_change(session *s, session_part part, err *e);

@@ -106,12 +106,12 @@ static int check_end(struct options *o, err *e)
     return 0;
 }
 
-static int change_materials(session *s, const struct options *o, err *e)
+static int change_materials(model *m, const struct options *o, err *e)
 {
     in *source = o->materials ? in_open(o->materials, e) : NULL;
-    int result = o->materials && (!source || materials_override(&s->m, source, e)) ? -1 : 0;
+    int result = o->materials && (!source || materials_override(m, source, e)) ? -1 : 0;
     in_close(source);
-    return result ? result : materials_set(&s->m, o->material.value, o->material.count, e);
+    return result ? result : materials_set(m, o->material.value, o->material.count, e);
 }
 
 /* The step: half the stable one, or --dt if that is not above it. */
@@ -184,12 +184,6 @@ static int say_provenance(tool *t, const session *s, const struct options *o, er
                            r->rate_fixed ? "" : " or cut", r->damping, r->adapt ? " adapted" : "");
 }
 
-/* The stream that frames came from: in a job of a batch, the batch's. */
-static const char *where_from(const session *s)
-{
-    return s->stage.source ? in_name(s->stage.source) : "stdin";
-}
-
 /* Reads the frames that came, passes them on, and starts from the last. Frames of other materials are not passed on. */
 static int take_frames(session *s, bool changed, err *e)
 {
@@ -203,7 +197,7 @@ static int take_frames(session *s, bool changed, err *e)
     s->started = count > 0 && !changed;
     s->run.first = (s->run.every > 0 || s->live) && !s->started;
     const int failed = count > 0 && (tled_problem_start(&s->problem, &last, &s->warnings, e) ||
-                                     (!changed && frame_choice_follow(&s->frames, &last, where_from(s), e)))
+                                     (!changed && frame_choice_follow(&s->frames, &last, stage_name(&s->stage), e)))
                            ? -1
                            : 0;
     if (count > 0)
@@ -364,7 +358,7 @@ static int prepare(session *s, const struct options *o, char *device, size_t siz
     if (!s->threads)
         return -1;
     s->problem.threads = s->threads;
-    if ((!s->card && change_materials(s, o, e)) || tled_inputs_collider(s, o, e) || tled_inputs_script(s, o, e) ||
+    if ((!s->card && change_materials(&s->m, o, e)) || tled_inputs_collider(s, o, e) || tled_inputs_script(s, o, e) ||
         tled_problem_make(&s->problem, &s->m, &s->script, o->control, e) || say_control(&s->m, o->control, e) ||
         sliding_make(&s->sliding, &s->problem, &s->m, o->friction, e) ||
         self_contact_make(&s->skin, &s->problem, &s->m, &s->sliding, o->friction, NULL, e) || check_friction(s, o, e) ||
@@ -544,9 +538,9 @@ static int run_job(void *context, tool *t, void *options, char said[BATCH_SAID],
 
 static int run_batch(const tool *t, struct options *o, err *e)
 {
-    tled_batch b = {.base = {.t = t}};
+    tled_batch b = {.changed = false};
     const batch_use use = {sizeof *o, &options_defaults, o, check_job, run_job, &b};
-    const int failed = stage_read(&b.base.stage, &b.base.m, e) || change_materials(&b.base, o, e) ||
+    const int failed = stage_read(&b.from.stage, &b.from.m, e) || change_materials(&b.from.m, o, e) ||
                                tled_batch_read(&b, o, e) || batch_go(t, o->batch, &use, e)
                            ? -1
                            : 0;

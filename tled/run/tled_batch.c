@@ -1,7 +1,5 @@
 #include "tled/run/tled_batch.h"
 
-#include "model/model_share.h"
-
 #include <stdio.h>
 #include <string.h>
 
@@ -9,24 +7,18 @@ int tled_batch_read(tled_batch *b, const struct options *o, err *e)
 {
     b->changed = o->materials || o->material.count;
     pthread_mutex_init(&b->card, NULL);
-    b->frames = stage_keep_frames(&b->base.stage, &b->base.m, &b->frame, e);
-    return b->frames < 0 ? -1 : 0;
+    return stage_shared_read(&b->from, e);
 }
 
 void tled_batch_free(tled_batch *b)
 {
-    if (b->frames > 0)
-        stage_free_frames(b->frame, b->frames);
-    stage_close_input(&b->base.stage);
-    model_free(&b->base.m);
+    stage_shared_free(&b->from);
 }
 
 int tled_batch_share(tled_batch *b, session *s, err *e)
 {
     s->card = &b->card;
-    s->stage.kept = b->frames ? b->frame : NULL;
-    s->stage.kept_count = b->frames;
-    return model_share(&s->m, &b->base.m, e);
+    return stage_shared_lend(&b->from, &s->stage, &s->m, e);
 }
 
 /* On a card, jobs run one after another, while the next are prepared and frames are written. */

@@ -9,9 +9,7 @@
 #include "tled/run/tled_session.h"
 
 typedef struct tled_batch {
-    session base; /* its stage and its model alone */
-    frame *frame; /* frames; owned */
-    int64_t frames;
+    stage_shared from;
     bool changed;         /* the materials, so frames that came belong to another model */
     pthread_mutex_t card; /* one job at a time computes on a card */
 } tled_batch;
