@@ -298,7 +298,7 @@ TSAN_UNIT = $(patsubst %,$(BUILD)/tests/unit/test_%,pool lines spnav frame_write
 tsan:
 	TSAN_OPTIONS=exitcode=99 SINEW_SANITIZED=1 REPEATS=1 $(MAKE) $(JOBS) BUILD=$(BUILD)/tsan BIN=$(BUILD)/tsan/bin CFLAGS='$(TSAN)' CUDA=no tsan-run
 tsan-run: all $(TSAN_UNIT)
-	$(ENVIRONMENT) prove $(if $(V),-v) $(TSAN_UNIT) tests/cli/threads.t tests/cli/live-slice.t tests/cli/live-msds.t tests/cli/live-tled.t tests/cli/spnav.t
+	$(ENVIRONMENT) prove $(if $(V),-v) $(TSAN_UNIT) tests/cli/threads.t tests/cli/live-slice.t tests/cli/live-msds.t tests/cli/live-tled.t tests/cli/spnav.t tests/cli/batch.t tests/cli/batch-msds.t
 
 # Every tool under valgrind's memcheck; and in a browser, the HTML pages that samples/paper and man/html make, and the console's page.
 .PHONY: check-valgrind valgrind browser

@@ -43,6 +43,8 @@ done
 cut -f 1-18 apart3.tsv >apart.log
 cut -f 1-18 three.tsv | cmp -s - apart.log
 is $? 0 "and a log, but for its clock"
+$run --log-every 0.002 --tsv material.energy --batch jobs.txt <ball
+is "$? $(wc -l <three.tsv) $(head -1 three.tsv | grep -c energy)" "0 7 1" "what the command line says of logs is of the jobs that have one"
 tled-run -d cpu -t 0.01 --batch jobs.txt <ball 2>&1 | sed 's/; [0-9.e-]* s$//' | sort >said
 is "$(wc -l <said) $(grep -c '^tled-run: jobs.txt:[2456]: .*: at 0.01 s, after [0-9]* steps, largest displacement [0-9.e-]* mm$' said)" "4 4" "without -q a line is said for each job"
 $run -c a=0.1 -o first <ball

@@ -519,8 +519,14 @@ static void end_session(session *s, tool *t, err *e)
     model_free(&s->m);
 }
 
+/* What the command line says of logs is of the jobs that have one. */
 static int check_job(void *options, err *e)
 {
+    struct options *o = options;
+    if (!o->log) {
+        o->log_every = options_defaults.log_every;
+        o->tsv = options_defaults.tsv;
+    }
     return check_end(options, e) || read_control(options, e) ? -1 : 0;
 }
 
