@@ -111,8 +111,8 @@ static int read_list(cavities *c, what w, const char *text, bool add, const mode
 {
     for (const char *p = text, *next; p; p = next) {
         char item[ITEM];
-        int volume;
-        double value;
+        int volume = -1;
+        double value = 0;
         const size_t length = strcspn(p, ",");
         next = p[length] ? p + length + 1 : NULL;
         if (length >= sizeof item)
