@@ -179,7 +179,7 @@ static double lanes_filled(bench *b, int lanes)
 {
     rows r = {0};
     bench_must(rows_make(&r, &b->problem, lanes, pool_threads(b->setup.threads), &b->e), &b->e);
-    const double filled = (double)r.cells / ((double)r.runs * lanes);
+    const double filled = (double)r.cells / ((double)r.groups * lanes);
     rows_free(&r);
     return filled;
 }

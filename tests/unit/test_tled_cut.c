@@ -223,37 +223,83 @@ static void test_pass(const tled_problem *p, const int brick[3], bool other)
     free(owned);
 }
 
-/* Each element is in the slabs that own nodes of it, each of its four rows of nodes
- * once; nodes are each in one layer. */
+/* Of what a group computes side by side: which lanes its stretches fill, and that its elements are of one kind. */
+static bool group_is_good(const tled_problem *p, const rows *r, const rows_group *g)
+{
+    const rows_stretch *s = r->stretch + g->stretch;
+    bool good = g->count <= r->lanes && g->stretches > 0;
+    int lane = 0;
+    for (int k = 0; k < g->stretches; k++) {
+        good &= s[k].lane == lane && s[k].count > 0 && (s[k].regular || s[k].count == 1);
+        for (int i = 0; i < s[k].count; i++)
+            for (int c = 0; c < 8; c++)
+                good &= r->place[p->element_node[8 * r->cell_element[g->cell + lane + i] + c]] == s[k].node[c] + i;
+        lane += s[k].count;
+    }
+    for (int i = 0; i < g->count; i++) {
+        const int64_t element = r->cell_element[g->cell + i];
+        good &= p->element_volume[element] == g->volume && tled_mix(p, element) == g->mix &&
+                (tled_cut(p, element) != NULL) == (g->cut >= 0) &&
+                (tled_border(p, element) != NULL) == (g->border >= 0);
+    }
+    return good && lane == g->count;
+}
+
+/* Counts what terms take: each force that belongs to a node of a block's sums, once. seat: the element in each lane of
+ * each seat. */
+static bool block_is_added(const tled_problem *p, const rows *r, const rows_block *l, const int32_t *seat, int *covered)
+{
+    bool good = true;
+    for (const rows_sum *s = r->sum + l->sum; s < r->sum + l->sum + l->sums; s++)
+        for (const rows_term *t = r->term + s->term; t < r->term + s->term + s->terms; t++)
+            for (int i = 0; i < r->lanes; i++) {
+                if (!(t->bits >> i & 1))
+                    continue;
+                const int64_t at = t->at + i, lane = at % r->lanes, corner = at / r->lanes % 24;
+                const int64_t element = seat[at / r->lanes / 24 * r->lanes + lane];
+                good &= corner < 8 && element >= 0 && r->place[p->element_node[8 * element + corner]] == s->node + i;
+                if (good)
+                    covered[8 * element + corner]++;
+            }
+    return good;
+}
+
+/* Each corner of each element is added once, by the slab that owns its node, and before the node has its sum; nodes are
+ * each in one block. */
 static void test_rows(const tled_problem *p, int lanes, int slabs)
 {
     rows r;
     err e = {0};
     int failed = rows_make(&r, p, lanes, slabs, &e);
-    int *covered = calloc((size_t)p->elements, sizeof *covered), good = 1;
+    int *covered = calloc((size_t)p->elements * 8, sizeof *covered), good = 1;
     uint8_t *seen = calloc((size_t)r.nodes + 1, 1);
-    if (!covered || !seen)
+    int32_t *seat = calloc((size_t)r.seats * lanes + 1, sizeof *seat);
+    if (!covered || !seen || !seat)
         exit(1);
-    for (const rows_run *run = r.run; run < r.run + r.runs; run++)
-        for (int i = 0; i < run->count; i++) {
-            int64_t element = r.cell_element[run->cell + i];
-            for (int bit = 0; bit < 4; bit++)
-                covered[element] += (run->mask >> bit & 1) << 4 * bit;
-            for (int c = 0; c < 8; c++)
-                good &= r.place[p->element_node[8 * element + c]] == run->node[c] + i;
+    for (const rows_block *l = r.block; l < r.block + r.blocks; l++) {
+        for (const rows_group *g = r.group + l->group; g < r.group + l->group + l->groups; g++) {
+            good &= group_is_good(p, &r, g);
+            for (int i = 0; i < lanes; i++)
+                seat[g->seat * lanes + i] = i < g->count ? r.cell_element[g->cell + i] : -1;
         }
-    for (int64_t i = 0; i < p->elements; i++)
-        good &= covered[i] == 0x1111;
-    for (const rows_layer *l = r.layer; l < r.layer + r.layers; l++)
+        good &= block_is_added(p, &r, l, seat, covered);
+        for (const rows_sum *s = r.sum + l->sum; s < r.sum + l->sum + l->sums; s++)
+            for (const rows_term *t = r.term + s->term; t < r.term + s->term + s->terms; t++)
+                for (int i = 0; i < lanes; i++)
+                    good &= !(t->bits >> i & 1) || !seen[s->node + i];
         for (int32_t n = 0; n < l->nodes; n++)
             good &= !seen[l->node + n]++;
+    }
+    for (int64_t i = 0; i < 8 * p->elements; i++)
+        good &= covered[i] == 1;
     for (int64_t n = 0; n < p->nodes; n++)
         good &= seen[r.place[n]];
-    ok(!failed && good && r.slabs <= slabs, "rows of %d lanes, %d slabs: %d runs, %.3g cells an element %s", lanes,
-       r.slabs, r.runs, (double)r.cells / (double)p->elements, e.text);
+    ok(!failed && good && r.slabs <= slabs, "rows of %d lanes, %d slabs: %d groups, %.3g cells an element %s", lanes,
+       r.slabs, r.groups, (double)r.cells / (double)p->elements, e.text);
     rows_free(&r);
     free(covered);
     free(seen);
+    free(seat);
 }
 
 /* What the CPU's executor finds, by rows, against the pass over elements. The displacement at the start is moved(). */

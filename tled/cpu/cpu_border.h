@@ -1,4 +1,4 @@
-/* What the CPU executor for boxes has of elements that are laminates (tled/problem/cut.h): the numbers of runs of
+/* What the CPU executor for boxes has of elements that are laminates (tled/problem/cut.h): the numbers of groups of
  * these; part of cpu_loops.h.
  */
 static int64_t border_numbers(const cpu_state *s)
@@ -16,12 +16,12 @@ static int64_t border_bytes(const cpu_state *s)
     return border_numbers(s) * (int64_t)sizeof(number);
 }
 
-static void border_fill_run(const cpu_state *s, const rows_run *run)
+static void border_fill_group(const cpu_state *s, const rows_group *g)
 {
     const int lanes = s->pass->lanes;
-    number *to = s->border + (int64_t)run->border * LAMINATE_NUMBERS * lanes;
-    for (int i = 0; i < run->count; i++) {
-        const double *of = tled_border(s->p, s->rows.cell_element[run->cell + i]);
+    number *to = s->border + (int64_t)g->border * LAMINATE_NUMBERS * lanes;
+    for (int i = 0; i < g->count; i++) {
+        const double *of = tled_border(s->p, s->rows.cell_element[g->cell + i]);
         for (int k = 0; k < LAMINATE_NUMBERS; k++)
             to[k * lanes + i] = (number)of[k];
     }
@@ -29,7 +29,7 @@ static void border_fill_run(const cpu_state *s, const rows_run *run)
 
 static void border_fill(const cpu_state *s)
 {
-    for (const rows_run *run = s->rows.run; s->border && run < s->rows.run + s->rows.runs; run++)
-        if (run->border >= 0)
-            border_fill_run(s, run);
+    for (const rows_group *g = s->rows.group; s->border && g < s->rows.group + s->rows.groups; g++)
+        if (g->border >= 0)
+            border_fill_group(s, g);
 }

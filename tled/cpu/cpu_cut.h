@@ -1,5 +1,5 @@
-/* What the CPU executor for boxes has of elements that are cut (tled/problem/cut.h): the moments of runs with any, and
- * the weight of nodes in parts of their mass; part of cpu_loops.h.
+/* What the CPU executor for boxes has of elements that are cut (tled/problem/cut.h): the moments of groups of these,
+ * and the weight of nodes in parts of their mass; part of cpu_loops.h.
  */
 enum { CUT_USED = 6 }; /* moments that forces take */
 
@@ -18,12 +18,12 @@ static int64_t cut_bytes(const cpu_state *s)
     return (cuts + (s->weight ? s->rows.nodes : 0)) * (int64_t)sizeof(number);
 }
 
-static void cut_fill_run(const cpu_state *s, const rows_run *run)
+static void cut_fill_group(const cpu_state *s, const rows_group *g)
 {
     const int lanes = s->pass->lanes;
-    number *to = s->cut + (int64_t)run->cut * CUT_USED * lanes;
-    for (int i = 0; i < run->count; i++) {
-        const float *moments = tled_cut(s->p, s->rows.cell_element[run->cell + i]);
+    number *to = s->cut + (int64_t)g->cut * CUT_USED * lanes;
+    for (int i = 0; i < g->count; i++) {
+        const float *moments = tled_cut(s->p, s->rows.cell_element[g->cell + i]);
         for (int k = 0; moments && k < CUT_USED; k++)
             to[k * lanes + i] = (number)moments[k];
     }
@@ -31,9 +31,9 @@ static void cut_fill_run(const cpu_state *s, const rows_run *run)
 
 static void cut_fill(const cpu_state *s)
 {
-    for (const rows_run *run = s->rows.run; s->cut && run < s->rows.run + s->rows.runs; run++)
-        if (run->cut >= 0)
-            cut_fill_run(s, run);
+    for (const rows_group *g = s->rows.group; s->cut && g < s->rows.group + s->rows.groups; g++)
+        if (g->cut >= 0)
+            cut_fill_group(s, g);
     for (int64_t n = 0; s->weight && n < s->p->nodes; n++)
         s->weight[s->rows.place[n]] = (number)tled_weight_part(s->p, n);
 }

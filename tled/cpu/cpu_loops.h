@@ -52,9 +52,10 @@ struct tled_state {
     number *border;                   /* likewise (cpu_border.h) */
     number *mixfibre, *mixture, *law; /* likewise; law: a law's numbers x */
     number *family, *mixfamily;       /* likewise, of families at an angle to the fibre: 6 x */
-    number *shape, *force;            /* a mesh's: cpu_work's, as is: */
+    number *force;                    /* cpu_work's; of boxes from the first whole line of the cache on (seats_at) */
+    number *shape;                    /* a mesh's: cpu_work's, as is: */
     int32_t *group_node;
-    int64_t mesh_bytes; /* of these */
+    int64_t mesh_bytes; /* of these, and of a mesh's forces */
     number *saved;      /* all fields, one after the other; made when first wanted, as are, of the fields of frames: */
     number *slot[TLED_SLOTS];
     bool spare_is_internal;
@@ -66,25 +67,8 @@ struct tled_state {
     cpu_work work;
 };
 
+#include "tled/cpu/cpu_boxes.h"
 #include "tled/cpu/cpu_mesh.h"
-
-static int boxes_make(cpu_state *s, err *e)
-{
-    return rows_make(&s->rows, s->p, s->pass->lanes, pool_threads(s->threads), e);
-}
-
-static void pass_work(void *context, int64_t chunk, int64_t from, int64_t to)
-{
-    const cpu_state *s = context;
-    (void)chunk;
-    for (int64_t i = from; i < to; i++)
-        s->pass->slab(&s->work, (int32_t)i);
-}
-
-static void boxes_pass(cpu_state *s)
-{
-    pool_run(s->threads, s->rows.slabs, 1, pass_work, s);
-}
 
 static void followers_in(void *context, int64_t chunk, int64_t from, int64_t to)
 {
@@ -332,10 +316,9 @@ static int64_t cpu_bytes(const cpu_state *s)
     cells += (s->mixfibre ? 3 : 0) + (s->mixture ? 1 + cpu_law_numbers(s->p->form) : 0);
     for (int i = 0; i < TLED_SLOTS; i++)
         numbers += s->slot[i] ? numbers_of(s, FIELD_IN_FRAMES) : 0;
-    return numbers * (int64_t)sizeof(number) + r->nodes * (7 * (int64_t)sizeof(number) + 1 + 4) +
-           r->runs * (int64_t)sizeof *r->run + r->cells * (cells * (int64_t)sizeof(number) + 4) + s->mesh_bytes +
-           cut_bytes(s) + border_bytes(s) + followers_bytes(s->p->followers) + films_bytes(s->p->films) +
-           self_contact_bytes(s->skin);
+    return numbers * (int64_t)sizeof(number) + r->nodes * (7 * (int64_t)sizeof(number) + 1 + 4) + boxes_bytes(s) +
+           r->cells * (cells * (int64_t)sizeof(number) + 4) + s->mesh_bytes + cut_bytes(s) + border_bytes(s) +
+           followers_bytes(s->p->followers) + films_bytes(s->p->films) + self_contact_bytes(s->skin);
 }
 
 /* ---- life */
@@ -497,7 +480,7 @@ static void make_work(cpu_state *s)
     w->mixture = s->mixture;
     w->shape = s->shape;
     w->group_node = s->group_node;
-    w->force = s->force;
+    w->force = s->rows.seats ? seats_at(s) : s->force;
     for (int a = 0; a < 3; a++) {
         w->velocity[a] = s->field[TLED_VELOCITY] + a * s->rows.nodes;
         w->sum[a] = s->sum + a * s->rows.nodes;

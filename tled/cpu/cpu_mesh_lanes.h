@@ -161,12 +161,6 @@ static inline int mesh_fibres(const cpu_work *w, int64_t group, fibre_set sets[2
     return sets[0].families || sets[0].is_fung || sets[1].families || sets[1].is_fung ? 2 : 0;
 }
 
-static inline void mesh_store(real_one *to, const element_corners *f)
-{
-    for (int i = 0; i < 8; i++)
-        store(to, i * LANES, f->at[i]);
-}
-
 /* The forces of groups; control: a constant. */
 static inline void mesh_groups_forces(const cpu_work *w, int64_t from, int64_t to, hourglass_kind control)
 {
@@ -186,9 +180,7 @@ static inline void mesh_groups_forces(const cpu_work *w, int64_t from, int64_t t
         fibre_set sets[2];
         const int count = mesh_fibres(w, group, sets);
         const element_field f = element_any_force_fibred(THE_FORM, control, u, &shape, law, fibre, which, sets, count);
-        mesh_store(force, &f.x);
-        mesh_store(force + 8 * LANES, &f.y);
-        mesh_store(force + 16 * LANES, &f.z);
+        store_field(force, &f);
     }
 }
 
@@ -226,7 +218,7 @@ static void mesh_nodes(const cpu_work *w, int64_t from, int64_t to)
 #endif
     const rows *r = w->r;
     const node_factors k = node_factors_of(w->dt, w->damping);
-    const rows_layer l = {.node = (int32_t)from, .nodes = (int32_t)(to - from)};
+    const rows_block l = {.node = (int32_t)from, .nodes = (int32_t)(to - from)};
     int32_t extra = 0, high = r->extras;
     while (extra < high) {
         const int32_t middle = extra + (high - extra) / 2;

@@ -1,6 +1,6 @@
 /* The CPU executor's pass over a slab, compiled for each instruction set, precision and form of one source,
- * cpu_lanes.c: layer by layer, runs of elements side by side, each corner's force added to its node; then the layer's
- * nodes, whose sums are whole. As the runs are in the lattice's order, so is each node's sum. What the pass works on is
+ * cpu_lanes.c: block by block, groups of elements side by side, whose forces are kept; then each corner's force is
+ * added to its node, in the lattice's order; then the block's nodes, whose sums are whole. What the pass works on is
  * cpu_work's, which the executor owns (cpu_loops.h).
  *
  *     f_n = sum over elements at n of element_force(u),   a = g + (f_ext - f_n) / m,   then node.h.
@@ -31,7 +31,7 @@ static inline int cpu_law_numbers(form f)
     return form_numbers(f) + HOURGLASS_NUMBERS;
 }
 
-/* A volume's numbers: those of its law, and its tension. As many as the form has: steppers read them for each run. */
+/* A volume's numbers: those of its law, and its tension. As many as the form has: steppers read them for each group. */
 static inline int cpu_kind_numbers(form f)
 {
     return cpu_law_numbers(f) + 1;
@@ -52,8 +52,8 @@ typedef struct cpu_work {
     const uint8_t *flags;
     const void *fibre[3]; /* cells, or NULL */
     const void *fraction; /* cells, or NULL */
-    const void *cut;      /* runs that are cut x 6 moments x lanes; or NULL: none is */
-    const void *border;   /* runs of laminates x LAMINATE_NUMBERS x lanes; or NULL: none is */
+    const void *cut;      /* groups that are cut x 6 moments x lanes; or NULL: none is */
+    const void *border;   /* groups of laminates x LAMINATE_NUMBERS x lanes; or NULL: none is */
     const void *weight;   /* nodes: by which gravity goes, in parts of the mass; or NULL: all of it */
     const void *mixture;  /* cells, or NULL: none is mixed */
     const void *law[FORM_NUMBERS + HOURGLASS_NUMBERS];                    /* cells: those that are mixed; or NULL */
@@ -61,8 +61,9 @@ typedef struct cpu_work {
     const void *family[FIBRE_FAMILIES][3], *mixfamily[FIBRE_FAMILIES][3]; /* cells, or NULL: of families */
     void *contractile, *mixcontractile; /* cells: contractile elements, which the pass moves on; or NULL */
     const void *shape;                  /* without a lattice: groups x cpu_mesh_numbers x lanes; or NULL */
-    const int32_t *group_node;          /* groups x 8 x lanes */
-    void *force;                        /* groups x 3 x 8 x lanes: what each corner is pulled with */
+    const int32_t *group_node;          /* likewise: groups x 8 x lanes; or NULL */
+    void *force;                        /* groups, or seats of such, x 3 x 8 x lanes: what each corner is pulled with;
+                                         * of seats, lanes before and behind may be read */
     const double *now, *next;           /* the curves' values */
     double dt, damping;
     int what;

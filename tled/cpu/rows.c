@@ -2,6 +2,7 @@
 
 #include "base/mem.h"
 #include "tled/contact/sliding.h"
+#include "tled/cpu/rows_groups.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -18,15 +19,20 @@ typedef struct builder {
     placed *node;     /* nodes, in order */
     placed *element;  /* elements, by their low corner, in order */
     int32_t *slab_of; /* the model's nodes */
-    int64_t run_capacity, layer_capacity, cell_capacity;
+    int64_t *start;   /* slabs + 1: where their elements begin in: */
+    int32_t *list;
+    int32_t *last; /* the model's nodes: the last block so far that has elements at them */
     err *e;
 } builder;
 
 void rows_free(rows *r)
 {
     free(r->slab);
-    free(r->layer);
-    free(r->run);
+    free(r->block);
+    free(r->group);
+    free(r->stretch);
+    free(r->sum);
+    free(r->term);
     free(r->place);
     free(r->cell_element);
     free(r->extra);
@@ -113,114 +119,97 @@ static int deal_nodes(builder *b, int slabs)
     return r->slab ? 0 : -1;
 }
 
-/* Which of the four rows of nodes at an element are a slab's own. */
-static uint8_t own_rows(const builder *b, int64_t element, int32_t slab)
+/* Which slabs an element has nodes of, each once. Returns how many. */
+static int slabs_at(const builder *b, int64_t element, int32_t at[8])
 {
-    static const int first[4] = {0, 3, 4, 7}; /* low and high y at low z, then at high z */
-    uint8_t mask = 0;
-    for (int i = 0; i < 4; i++)
-        mask |= (uint8_t)((b->slab_of[b->p->element_node[8 * element + first[i]]] == slab) << i);
-    return mask;
-}
-
-static bool follows(const builder *b, const rows_run *run, int64_t element, uint8_t mask)
-{
-    if (run->count == b->r->lanes || run->mask != mask || !run->regular ||
-        run->volume != b->p->element_volume[element] || run->mix != tled_mix(b->p, element) ||
-        (run->border >= 0) != (tled_border(b->p, element) != NULL))
-        return false;
-    for (int c = 0; c < 8; c++)
-        if (b->r->place[b->p->element_node[8 * element + c]] != run->node[c] + run->count)
-            return false;
-    return true;
-}
-
-static bool is_regular(const rows_run *run)
-{
-    const int32_t *n = run->node;
-    return n[1] == n[0] + 1 && n[2] == n[3] + 1 && n[5] == n[4] + 1 && n[6] == n[7] + 1;
-}
-
-/* The last run has this element. */
-static void mark_cut(const builder *b, int64_t element)
-{
-    rows_run *run = &b->r->run[b->r->runs - 1];
-    if (run->cut < 0 && tled_cut(b->p, element))
-        run->cut = b->r->cuts++;
-}
-
-/* Adds an element to the slab's last run, or in a new one, unless a layer begins with it. */
-static int add_cell(builder *b, int64_t element, uint8_t mask, bool begins)
-{
-    rows *r = b->r;
-    if (mem_grow(&r->cell_element, &b->cell_capacity, r->cells + 1, sizeof *r->cell_element, "the rows", b->e))
-        return -1;
-    r->cell_element[r->cells++] = (int32_t)element;
-    if (!begins && follows(b, &r->run[r->runs - 1], element, mask)) {
-        r->run[r->runs - 1].count++;
-        mark_cut(b, element);
-        return 0;
+    int count = 0;
+    for (int c = 0; c < 8; c++) {
+        const int32_t slab = b->slab_of[b->p->element_node[8 * element + c]];
+        int i = 0;
+        while (i < count && at[i] != slab)
+            i++;
+        if (i == count)
+            at[count++] = slab;
     }
-    if (r->cells > INT32_MAX - ROWS_PAD ||
-        mem_grow(&r->run, &b->run_capacity, r->runs + 1, sizeof *r->run, "the rows", b->e))
+    return count;
+}
+
+/* Lists the elements of each slab, in their order. */
+static int deal_elements(builder *b)
+{
+    const int64_t elements = b->p->elements;
+    int32_t at[8];
+    int64_t total = 0;
+    b->start = mem_array(b->r->slabs + 1, sizeof *b->start, "the rows", b->e);
+    if (!b->start)
         return -1;
-    rows_run *run = &r->run[r->runs++];
-    *run = (rows_run){.cell = r->cells - 1,
-                      .volume = b->p->element_volume[element],
-                      .mix = tled_mix(b->p, element),
-                      .cut = -1,
-                      .border = tled_border(b->p, element) ? r->borders++ : -1,
-                      .count = 1,
-                      .mask = mask};
-    for (int c = 0; c < 8; c++)
-        run->node[c] = r->place[b->p->element_node[8 * element + c]];
-    run->regular = is_regular(run);
-    mark_cut(b, element);
+    for (int64_t i = 0; i < elements; i++)
+        for (int k = slabs_at(b, i, at) - 1; k >= 0; k--)
+            b->start[at[k]]++;
+    for (int32_t i = 0; i <= b->r->slabs; i++) {
+        total += b->start[i];
+        b->start[i] = total; /* where it ends, until it is filled from there downwards */
+    }
+    b->list = mem_array(total, sizeof *b->list, "the rows", b->e);
+    if (!b->list)
+        return -1;
+    for (int64_t i = elements - 1; i >= 0; i--) {
+        const int32_t element = b->element[i].index;
+        for (int k = slabs_at(b, element, at) - 1; k >= 0; k--)
+            b->list[--b->start[at[k]]] = element;
+    }
     return 0;
 }
 
-static int begin_layer(builder *b)
+/* Each node of a slab is in the first block that has all before it and its own last element in it or before it. */
+static void end_nodes(builder *b, int32_t which, int64_t *node)
 {
     rows *r = b->r;
-    if (mem_grow(&r->layer, &b->layer_capacity, r->layers + 1, sizeof *r->layer, "the rows", b->e))
-        return -1;
-    r->layer[r->layers++] = (rows_layer){.run = r->runs};
-    return 0;
+    const rows_slab *s = &r->slab[which];
+    for (int32_t at = s->block; *node < b->p->nodes && b->slab_of[b->node[*node].index] == which; ++*node) {
+        const int32_t n = b->node[*node].index;
+        at = b->last[n] > at ? b->last[n] : at;
+        if (!r->block[at].nodes++)
+            r->block[at].node = r->place[n];
+    }
 }
 
-/* A slab's layers, from z where its first cells may be to its last nodes: their runs and their nodes. */
-static int cut_slab(builder *b, int32_t which, int64_t *node, int64_t *element)
+/* A slab's blocks: their elements, of about as many each, and their nodes. */
+static int cut_slab(builder *b, rows_groups *groups, int32_t which, int64_t *node)
 {
     rows *r = b->r;
     rows_slab *s = &r->slab[which];
-    const int64_t first = *node;
-    while (*node < b->p->nodes && b->slab_of[b->node[*node].index] == which)
-        ++*node;
-    s->layer = r->layers;
-    /* Cells lie from a layer below its first row to its last row, and are in order: a window that moves on. */
-    int32_t z = b->node[first].z - 1, last = b->node[*node - 1].z;
-    while (*element > 0 && b->element[*element - 1].z >= z)
-        --*element;
-    while (*element < b->p->elements && b->element[*element].z < z)
-        ++*element;
-    for (int64_t n = first; z <= last; z++) {
-        if (begin_layer(b))
+    const int64_t from = b->start[which], count = b->start[which + 1] - from;
+    const int64_t blocks = count ? (count - 1) / ROWS_BLOCK + 1 : 1;
+    s->block = r->blocks;
+    groups->seat = r->seats;
+    groups->node = r->place[b->node[*node].index];
+    groups->nodes = 0;
+    for (int64_t i = *node; i < b->p->nodes && b->slab_of[b->node[i].index] == which; i++)
+        groups->nodes++;
+    for (int64_t i = 0; i < blocks; i++) {
+        const int32_t *element = b->list + from + count * i / blocks;
+        const int32_t of = (int32_t)(count * (i + 1) / blocks - count * i / blocks);
+        for (int32_t k = 0; k < 8 * of; k++)
+            b->last[b->p->element_node[8 * (int64_t)element[k / 8] + k % 8]] = r->blocks;
+        if (rows_add_block(groups, element, of))
             return -1;
-        rows_layer *l = &r->layer[r->layers - 1];
-        for (bool begins = true; *element < b->p->elements && b->element[*element].z == z; ++*element) {
-            int64_t i = b->element[*element].index;
-            uint8_t mask = own_rows(b, i, which);
-            if (mask && add_cell(b, i, mask, begins))
-                return -1;
-            begins &= !mask;
-        }
-        l->runs = r->runs - l->run;
-        l->node = n < *node ? r->place[b->node[n].index] : 0;
-        for (; n < *node && b->node[n].z == z; n++)
-            l->nodes++;
     }
-    s->layers = r->layers - s->layer;
+    s->blocks = r->blocks - s->block;
+    end_nodes(b, which, node);
     return 0;
+}
+
+static int cut_slabs(builder *b)
+{
+    rows_groups groups = {.r = b->r, .p = b->p, .e = b->e};
+    int64_t node = 0;
+    b->last = mem_array(b->p->nodes, sizeof *b->last, "the rows", b->e);
+    int result = !b->last || deal_elements(b) || rows_groups_make(&groups) ? -1 : 0;
+    for (int32_t i = 0; !result && i < b->r->slabs; i++)
+        result = cut_slab(b, &groups, i, &node);
+    rows_groups_free(&groups);
+    return result;
 }
 
 bool rows_is_extra(const tled_problem *p, int64_t n)
@@ -240,9 +229,9 @@ static int by_row(const void *a, const void *b)
 /* Where a slab's nodes begin. */
 static int32_t begins_at(const rows *r, const rows_slab *s)
 {
-    for (int32_t i = s->layer; i < s->layer + s->layers; i++)
-        if (r->layer[i].nodes)
-            return r->layer[i].node;
+    for (int32_t i = s->block; i < s->block + s->blocks; i++)
+        if (r->block[i].nodes)
+            return r->block[i].node;
     return INT32_MAX;
 }
 
@@ -299,13 +288,12 @@ int rows_make(rows *r, const tled_problem *p, int lanes, int slabs, err *e)
     memset(r, 0, sizeof *r);
     r->lanes = lanes;
     builder b = {.r = r, .p = p, .e = e};
-    int result = find_places(&b) || deal_nodes(&b, slabs) ? -1 : 0;
-    int64_t node = 0, element = 0;
-    for (int32_t i = 0; !result && i < r->slabs; i++)
-        result = cut_slab(&b, i, &node, &element);
-    result = result || rows_list_extras(r, p, e) ? -1 : 0;
+    const int result = find_places(&b) || deal_nodes(&b, slabs) || cut_slabs(&b) || rows_list_extras(r, p, e) ? -1 : 0;
     free(b.node);
     free(b.element);
     free(b.slab_of);
+    free(b.start);
+    free(b.list);
+    free(b.last);
     return result;
 }
