@@ -4,6 +4,7 @@
 #include <stdio.h>
 
 extern "C" {
+#include "base/mem.h"
 #include "solve/card.h"
 }
 
@@ -60,15 +61,96 @@ int card_check(int code, const char *call, int64_t step, err *e)
     return err_set(e, NULL, 0, "CUDA: %s failed%s: %s", call, at, cudaGetErrorString((cudaError_t)code));
 }
 
+/* ---- Memory that is kept for who asks next */
+
+enum { KEPT = 256 /* pieces of a kind that are not in use; what is more goes back */ };
+
+typedef struct piece {
+    void *at;
+    int64_t bytes;
+} piece;
+
+typedef struct kept { /* of the card's memory, or of the host's */
+    piece *used, free[KEPT];
+    int64_t useds, room;
+    int frees;
+    cudaError_t (*give)(void *);
+} kept;
+
+static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
+static bool is_shared; /* written with both locks, read with either */
+static kept of_card = {NULL, {}, 0, 0, 0, cudaFree}, of_host = {NULL, {}, 0, 0, 0, cudaFreeHost};
+
+/* A piece of that size, or NULL. */
+static void *kept_take(kept *k, int64_t bytes)
+{
+    void *at = NULL;
+    pthread_mutex_lock(&lock);
+    for (int i = 0; i < k->frees && !at; i++)
+        if (k->free[i].bytes == bytes) {
+            at = k->free[i].at;
+            k->free[i] = k->free[--k->frees];
+        }
+    pthread_mutex_unlock(&lock);
+    return at;
+}
+
+/* What is in use is noted, where the card is shared. -1 with e filled. */
+static int kept_note(kept *k, void *at, int64_t bytes, err *e)
+{
+    pthread_mutex_lock(&lock);
+    const int failed = is_shared && MEM_ROOM(&k->used, &k->room, k->useds + 1, "the card's memory", e);
+    if (is_shared && !failed)
+        k->used[k->useds++] = {at, bytes};
+    pthread_mutex_unlock(&lock);
+    return failed ? -1 : 0;
+}
+
+static void kept_give(kept *k, void *at)
+{
+    bool stays = false;
+    pthread_mutex_lock(&lock);
+    for (int64_t i = 0; i < k->useds; i++)
+        if (k->used[i].at == at) {
+            stays = k->frees < KEPT;
+            if (stays)
+                k->free[k->frees++] = k->used[i];
+            k->used[i] = k->used[--k->useds];
+            break;
+        }
+    pthread_mutex_unlock(&lock);
+    if (!stays)
+        k->give(at);
+}
+
+/* Gives back to the driver all that is not in use, and tells whether there was any. */
+static bool kept_clear(kept *k)
+{
+    pthread_mutex_lock(&lock);
+    const bool any = k->frees > 0;
+    while (k->frees > 0)
+        k->give(k->free[--k->frees].at);
+    pthread_mutex_unlock(&lock);
+    return any;
+}
+
+static cudaError_t take_new(int64_t bytes, size_t *left, size_t *all, void **memory)
+{
+    cudaError_t code = cudaMemGetInfo(left, all);
+    if (code == cudaSuccess && (uint64_t)bytes > *left)
+        code = cudaErrorMemoryAllocation;
+    return code == cudaSuccess ? cudaMalloc(memory, (size_t)bytes) : code;
+}
+
 void *card_take(int64_t bytes, const char *what, err *e)
 {
     size_t left = 0, all = 0;
-    void *memory = NULL;
-    cudaError_t code = cudaMemGetInfo(&left, &all);
-    if (code == cudaSuccess && (uint64_t)bytes > left)
-        code = cudaErrorMemoryAllocation;
-    if (code == cudaSuccess)
-        code = cudaMalloc(&memory, (size_t)bytes);
+    void *memory = kept_take(&of_card, bytes);
+    cudaError_t code = memory ? cudaSuccess : take_new(bytes, &left, &all, &memory);
+    if (code == cudaErrorMemoryAllocation && kept_clear(&of_card)) {
+        cudaGetLastError();
+        code = take_new(bytes, &left, &all, &memory);
+    }
     if (code == cudaErrorMemoryAllocation) {
         cudaGetLastError();
         err_set(e, NULL, 0,
@@ -76,10 +158,63 @@ void *card_take(int64_t bytes, const char *what, err *e)
                 1e-9 * (double)bytes, 1e-9 * (double)left, 1e-9 * (double)all);
         return NULL;
     }
-    return card_check(code, "cudaMalloc", -1, e) ? NULL : memory;
+    if (card_check(code, "cudaMalloc", -1, e))
+        return NULL;
+    if (!kept_note(&of_card, memory, bytes, e))
+        return memory;
+    cudaFree(memory);
+    return NULL;
 }
 
 void card_give(void *memory)
 {
-    cudaFree(memory);
+    if (memory)
+        kept_give(&of_card, memory);
+}
+
+void *card_host_take(int64_t bytes, err *e)
+{
+    void *memory = kept_take(&of_host, bytes);
+    if (!memory && card_check(cudaMallocHost(&memory, (size_t)bytes), "cudaMallocHost", -1, e))
+        return NULL;
+    if (!kept_note(&of_host, memory, bytes, e))
+        return memory;
+    cudaFreeHost(memory);
+    return NULL;
+}
+
+void card_host_give(void *memory)
+{
+    if (memory)
+        kept_give(&of_host, memory);
+}
+
+/* ---- Kernels whose blocks wait for each other */
+
+static pthread_mutex_t turn = PTHREAD_MUTEX_INITIALIZER;
+static cudaEvent_t turn_over; /* the last such kernel's; NULL: the card is not shared, or there was none */
+
+void card_share(void)
+{
+    pthread_mutex_lock(&turn);
+    pthread_mutex_lock(&lock);
+    is_shared = true;
+    pthread_mutex_unlock(&lock);
+    pthread_mutex_unlock(&turn);
+}
+
+int card_turn_begin(void *stream)
+{
+    pthread_mutex_lock(&turn);
+    if (!is_shared)
+        return cudaSuccess;
+    return turn_over ? cudaStreamWaitEvent((cudaStream_t)stream, turn_over, 0)
+                     : cudaEventCreateWithFlags(&turn_over, cudaEventDisableTiming);
+}
+
+int card_turn_end(void *stream)
+{
+    const cudaError_t code = turn_over ? cudaEventRecord(turn_over, (cudaStream_t)stream) : cudaSuccess;
+    pthread_mutex_unlock(&turn);
+    return code;
 }

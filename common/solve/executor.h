@@ -62,6 +62,9 @@ typedef struct executor {
     /* Loads what the first steps on the device would wait for: in any thread, while others use it. Only where it can be
      * used; what fails here fails there again. NULL: there is nothing to load. */
     void (*load)(void);
+    /* Tells the device that many states will be made and freed, by several threads, before any of them. NULL: it makes
+     * no difference to it. */
+    void (*share)(void);
 } executor;
 
 enum { EXECUTOR_FORMS = 32 }; /* the most of any solver: a bit each */

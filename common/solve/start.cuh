@@ -6,6 +6,10 @@
 #include <stddef.h>
 #include <stdint.h>
 
+extern "C" {
+#include "solve/card.h"
+}
+
 typedef struct card_blocks {
     int64_t count;
     int threads;   /* each */
@@ -28,7 +32,12 @@ static cudaError_t card_start(void (*kernel)(P...), const card_blocks &blocks, c
     how.stream = blocks.stream;
     how.attrs = &attribute;
     how.numAttrs = blocks.together;
-    return cudaLaunchKernelEx(&how, kernel, argument...);
+    if (!blocks.together)
+        return cudaLaunchKernelEx(&how, kernel, argument...);
+    const int before = card_turn_begin(blocks.stream);
+    const cudaError_t started = before ? (cudaError_t)before : cudaLaunchKernelEx(&how, kernel, argument...);
+    const int after = card_turn_end(blocks.stream);
+    return started ? started : (cudaError_t)after;
 }
 
 #endif

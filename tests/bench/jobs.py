@@ -1,7 +1,8 @@
 """jobs.py BIN THREADS ROUNDS FACE.obj FOLDER cpu|cuda MM...: whole pipes from surfaces to a moving face, by stage, as CSV: voxelise, attach, bind, tled-run for .5 s of
 model at nu .45 with both zygomatics at .1, and sinew deform; then all of them in one pipe. A stage reads a file and writes one. And a block of 524,288 nodes
 (of 8,192 on the CPU) under a probe by msds-run; FRAMES: what the newer tools are given as --frames. Then frames by what is asked for, of the newer tools
-alone: of the block, as msds-run tells them (-v), beside the solver; and of the face, model's seconds a second, from a run of 2 s more. OLD=FOLDER of tools: those are run by turns with these, and each row has
+alone: of the block, as msds-run tells them (-v), beside the solver; and of the face, model's seconds a second, from a run of 2 s more. And a batch of
+BATCH [100] expressions of the first size, .3 s each, and of one step each, with the bytes of two of them beside runs alone. OLD=FOLDER of tools: those are run by turns with these, and each row has
 the ratio of this round's times, which says more than seconds where a processor is shared. PRECISION: double or single [single].
 Beside them, limits of the machine: the model of each size through a pipe, and to the disk; on a card, its context alone. Peak memory is at least that of a
 Python that is about to become the tool, 12 MiB."""
@@ -15,6 +16,7 @@ import time
 
 MODEL_SECONDS = ".5"
 MUSCLES = "muscle_zyg_xneg=.1,muscle_zyg_xpos=.1"
+BATCH = int(os.environ.get("BATCH", "100"))
 
 
 SAID = tempfile.TemporaryFile()  # what the tools say; their warnings are of no use here
@@ -149,6 +151,31 @@ def bench_face(bench, face, side, device, threads, precision):
     return model
 
 
+def bench_batch(bench, model, size, device, threads, precision):
+    """Expressions of one model, all of them different. Outputs are taken away after each batch."""
+    tools = bench.versions[-1][1]
+    run = [tools + "/tled-run", "-q", "--threads", threads, "-d", device, "--precision", precision, "-m", "tissue.nu=0.45",
+           "--frames", "surfaces:f32"]
+    lines, alone = bench.path("lines"), bench.path("alone")
+
+    def levels(i):
+        return "muscle_zyg_xneg=%.4f,muscle_zyg_xpos=%.4f" % (.02 + .1 * i / BATCH, .12 - .1 * i / BATCH)
+
+    for stage, end in ("one step each", "-n 1"), (".3 s each", "-t 0.3"):
+        outputs = [bench.path("job%d" % i) for i in range(BATCH)]
+        with open(lines, "w") as to:
+            for i, output in enumerate(outputs):
+                to.write("-c %s %s -o %s\n" % (levels(i), end, output))
+        took, memory = job(run + ["--batch", lines], model, bench.path("said"))
+        bench.row("face", size, device, "batch of %d; %s" % (BATCH, stage), "new", [took], [], memory, sum(os.path.getsize(o) for o in outputs))
+        for i in 0, BATCH - 1:
+            job(run + ["-c", levels(i)] + end.split(), model, alone)
+            if not same(alone, outputs[i]):
+                print("# %s at %s: the bytes of job %d of the batch are not those of a run alone" % ("face", size, i + 1), flush=True)
+        for output in outputs:
+            os.remove(output)
+
+
 def bench_face_frames(bench, model, size_of, device, threads, precision):
     """Bound surfaces at 60 frames a second: how many of the model's seconds a run goes on by in one of the clock's."""
     tools = bench.versions[-1][1]
@@ -241,6 +268,8 @@ def main():
             model = bench_face(bench, os.path.abspath(face), side, device, threads, precision)
             if device == "cuda":
                 bench_face_frames(bench, model, side + "mm", device, threads, precision)
+            if side == sys.argv[7]:
+                bench_batch(bench, model, side + "mm", device, threads, precision)
         nodes = "128x64x64" if device == "cuda" else "32x16x16"
         block, run = bench_block(bench, nodes, device, threads)
         bench_block_frames(bench, block, run, device, nodes)

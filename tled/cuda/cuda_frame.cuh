@@ -126,7 +126,7 @@ static int make_frame(cuda_state *s, cuda_frame *f, err *e)
         return 0;
     const int64_t numbers = frame_numbers(s, s->frame != NULL);
     return CUDA_TRY(cudaEventCreateWithFlags(&f->arrived, cudaEventDisableTiming)) ||
-                   CUDA_TRY(cudaMallocHost((void **)&f->host, (size_t)numbers * sizeof(real)))
+                   !(f->host = (real *)card_host_take(numbers * (int64_t)sizeof(real), e))
                ? -1
                : 0;
 }

@@ -335,15 +335,15 @@ static void cuda_destroy(cuda_state *s)
     for (int i = 0; i < TLED_SLOTS; i++) {
         if (s->slot[i].arrived)
             cudaEventDestroy(s->slot[i].arrived);
-        cudaFreeHost(s->slot[i].host);
+        card_host_give(s->slot[i].host);
     }
     for (int i = 0; i < TABLES; i++) {
         if (s->table_free[i])
             cudaEventDestroy(s->table_free[i]);
-        cudaFreeHost(s->table_host[i]);
+        card_host_give(s->table_host[i]);
     }
-    cudaFreeHost(s->staging);
-    cudaFreeHost(s->sums_host);
+    card_host_give(s->staging);
+    card_host_give(s->sums_host);
     card_give(s->memory);
     card_give(s->skin_memory);
     card_give(s->saved_internal);
@@ -386,8 +386,8 @@ static int fill(cuda_state *s, err *e)
     s->time = p->start;
     if (put_problem(s, e) || put_skin(s, e) || make_events(s, e) || set_all(s, e) || s->method->begin(s, e))
         return -1;
-    /* Streams that do not block wait for none of it by themselves. */
-    return CUDA_TRY(cudaDeviceSynchronize()) ? -1 : find_internal(s, e);
+    /* Streams that do not block wait for none of it by themselves. Other states' streams are not waited for. */
+    return CUDA_TRY(cudaStreamSynchronize(NULL)) ? -1 : find_internal(s, e);
 }
 
 static cuda_state *cuda_create(const tled_problem *problem, pool *threads, err *e)
@@ -500,7 +500,8 @@ const tled_executor CUDA_EXECUTOR = {.is = {.device = "cuda",
                                             .features = CUDA_FEATURES,
                                             .forms = TILES_FORMS,
                                             .unusable = card_unusable,
-                                            .load = cuda_load},
+                                            .load = cuda_load,
+                                            .share = card_share},
                                      .create = cuda_create,
                                      .destroy = cuda_destroy,
                                      .step = cuda_step,

@@ -192,16 +192,18 @@ template <class G, class L> static size_t resident_shared(int64_t curves)
            (3 * (size_t)G::PLACES + L::NEAR + 24 * (size_t)G::CELLS) * sizeof(real);
 }
 
-/* How many tiles have a place at once; 0: none, or the card starts no kernels that wait for each other. */
+/* How many tiles have a place at once; 0: none, or the card starts no kernels that wait for each other. A kernel is
+ * allowed what it takes at most: the states that share it have more and fewer curves. */
 template <class G, class L, class T> static int64_t resident_places(int64_t curves)
 {
     int device = 0, processors = 0, together = 0, each = 0;
     const size_t shared = resident_shared<G, L>(curves);
+    const int most = (int)resident_shared<G, L>(RESIDENT_CURVES);
     const bool fits =
         curves <= RESIDENT_CURVES && cudaGetDevice(&device) == cudaSuccess &&
         cudaDeviceGetAttribute(&processors, cudaDevAttrMultiProcessorCount, device) == cudaSuccess &&
         cudaDeviceGetAttribute(&together, cudaDevAttrCooperativeLaunch, device) == cudaSuccess && together &&
-        cudaFuncSetAttribute(resident_kernel<G, L, T>, cudaFuncAttributeMaxDynamicSharedMemorySize, (int)shared) ==
+        cudaFuncSetAttribute(resident_kernel<G, L, T>, cudaFuncAttributeMaxDynamicSharedMemorySize, most) ==
             cudaSuccess &&
         cudaOccupancyMaxActiveBlocksPerMultiprocessor(&each, resident_kernel<G, L, T>, G::THREADS, shared) ==
             cudaSuccess;

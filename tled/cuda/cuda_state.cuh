@@ -290,11 +290,11 @@ static int make_events(cuda_state *s, err *e)
         CUDA_TRY(cudaEventCreateWithFlags(&s->after_beside, cudaEventDisableTiming)) ||
         CUDA_TRY(cudaEventCreateWithFlags(&s->frame_free, cudaEventDisableTiming)) ||
         CUDA_TRY(cudaEventCreateWithFlags(&s->frame_ready, cudaEventDisableTiming)) ||
-        CUDA_TRY(cudaMallocHost((void **)&s->sums_host, sizeof *s->sums_host)) ||
-        CUDA_TRY(cudaMallocHost((void **)&s->staging, (size_t)largest_field(s) * sizeof(real))))
+        !(s->sums_host = (tled_sums *)card_host_take((int64_t)sizeof *s->sums_host, e)) ||
+        !(s->staging = (real *)card_host_take(largest_field(s) * (int64_t)sizeof(real), e)))
         return -1;
     for (int i = 0; i < TABLES; i++)
-        if (CUDA_TRY(cudaMallocHost((void **)&s->table_host[i], TABLE_ROWS * row)) ||
+        if (!(s->table_host[i] = (double *)card_host_take(TABLE_ROWS * (int64_t)row, e)) ||
             CUDA_TRY(cudaEventCreateWithFlags(&s->table_free[i], cudaEventDisableTiming)))
             return -1;
     return 0;

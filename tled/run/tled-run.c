@@ -544,12 +544,15 @@ static int run_job(void *context, tool *t, void *options, char said[BATCH_SAID],
 
 static int run_batch(const tool *t, struct options *o, err *e)
 {
-    tled_batch b = {.changed = false};
+    tled_batch b = {.card = {PTHREAD_MUTEX_INITIALIZER, PTHREAD_COND_INITIALIZER, 0}};
     const batch_use use = {sizeof *o, &options_defaults, o, check_job, run_job, &b};
+    executor_ahead ahead = {0};
+    executor_ahead_start(&ahead, executors_for(o), device_names[o->device], &(executor_need){.features = 0});
     const int failed = stage_read(&b.from.stage, &b.from.m, e) || change_materials(&b.from.m, o, e) ||
                                tled_batch_read(&b, o, e) || batch_go(t, o->batch, &use, e)
                            ? -1
                            : 0;
+    executor_ahead_end(&ahead);
     tled_batch_free(&b);
     return failed;
 }

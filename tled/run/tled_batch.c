@@ -6,13 +6,14 @@
 int tled_batch_read(tled_batch *b, const struct options *o, err *e)
 {
     b->changed = o->materials || o->material.count;
-    pthread_mutex_init(&b->card, NULL);
     return stage_shared_read(&b->from, e);
 }
 
 void tled_batch_free(tled_batch *b)
 {
     stage_shared_free(&b->from);
+    pthread_cond_destroy(&b->card.opened);
+    pthread_mutex_destroy(&b->card.lock);
 }
 
 int tled_batch_share(tled_batch *b, session *s, err *e)
@@ -21,15 +22,37 @@ int tled_batch_share(tled_batch *b, session *s, err *e)
     return stage_shared_lend(&b->from, &s->stage, &s->m, e);
 }
 
-/* On a card, jobs run one after another, while the next are prepared and frames are written. */
+/* Elements whose states a card has at once: some gigabytes. */
+enum { ELEMENTS_TOGETHER = 4000000 };
+
+static void enter(card_gate *g, const executor *device, int64_t elements)
+{
+    pthread_mutex_lock(&g->lock);
+    while (g->elements > 0 && g->elements + elements > ELEMENTS_TOGETHER)
+        pthread_cond_wait(&g->opened, &g->lock);
+    g->elements += elements;
+    if (device->share)
+        device->share();
+    pthread_mutex_unlock(&g->lock);
+}
+
+static void leave(card_gate *g, int64_t elements)
+{
+    pthread_mutex_lock(&g->lock);
+    g->elements -= elements;
+    pthread_cond_broadcast(&g->opened);
+    pthread_mutex_unlock(&g->lock);
+}
+
 int tled_batch_run(session *s, run_end *end, err *e)
 {
-    const bool waits = s->card && strcmp(s->run.device->is.device, "cpu") != 0;
-    if (waits)
-        pthread_mutex_lock(s->card);
+    const executor *device = &s->run.device->is;
+    const bool enters = s->card && strcmp(device->device, "cpu") != 0;
+    if (enters)
+        enter(s->card, device, s->problem.elements);
     const int failed = run_go(&s->run, end, e);
-    if (waits)
-        pthread_mutex_unlock(s->card);
+    if (enters)
+        leave(s->card, s->problem.elements);
     return failed;
 }
 

@@ -10,8 +10,8 @@
 
 typedef struct tled_batch {
     stage_shared from;
-    bool changed;         /* the materials, so frames that came belong to another model */
-    pthread_mutex_t card; /* one job at a time computes on a card */
+    bool changed; /* the materials, so frames that came belong to another model */
+    card_gate card;
 } tled_batch;
 
 /* Reads the model's frames, to the end of the stream. -1 with e filled. */
@@ -21,7 +21,8 @@ void tled_batch_free(tled_batch *b);
 /* Gives the session of a job the model and the frames. -1 with e filled. */
 int tled_batch_share(tled_batch *b, session *s, err *e);
 
-/* run_go, for a job or another run. */
+/* run_go, for a job or another run. On a card small models go on side by side: the card takes steps of one while others
+ * look at theirs, and come and go. Large ones wait for each other, since their states would take its memory. */
 int tled_batch_run(session *s, run_end *end, err *e);
 
 /* What is said of a job in the end. */

@@ -18,6 +18,13 @@
 #include "tled/problem/followers.h"
 #include "tled/problem/support.h"
 
+/* Which jobs of a batch compute on a card now. */
+typedef struct card_gate {
+    pthread_mutex_t lock;
+    pthread_cond_t opened;
+    int64_t elements; /* of their models, in all; 0: there are none */
+} card_gate;
+
 typedef struct session {
     const tool *t;
     stage stage;
@@ -37,7 +44,7 @@ typedef struct session {
     checkpoint *checkpoint; /* NULL: none */
     int64_t next_frame;     /* its index */
     bool coarse;            /* it begins from the rest of a coarser model */
-    pthread_mutex_t *card;  /* of a batch, whose model is as it is to be: of what a card computes; NULL: of none */
+    card_gate *card;        /* of a batch, whose model is as it is to be; NULL: of none */
     bool started;           /* the state that the run begins from has been written: as a frame that came */
     int64_t cut;            /* parts of a step, as said last */
     double stable;          /* s: at rest */
