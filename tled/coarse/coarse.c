@@ -66,13 +66,16 @@ static int32_t parent_at(const coarse *c, const int32_t *at, int v)
     return c->node[place_of(c, to, 1)];
 }
 
-/* Whether all finer nodes lie between coarse ones. A model's node.lattice need not be that of its elements. */
-static bool has_parents(const coarse *c)
+/* Which coarse nodes finer ones lie between. A model's node.lattice need not be that of its elements. */
+static int find_parents(coarse *c, err *e)
 {
-    for (int64_t i = 0; i < 8 * c->fine->nodes; i++)
-        if (parent_at(c, c->lattice + 3 * (i / 8), (int)(i % 8)) < 0)
-            return false;
-    return true;
+    c->parent = mem_array(c->fine->nodes, 8 * sizeof *c->parent, "the coarser model", e);
+    for (int64_t i = 0; c->parent && i < 8 * c->fine->nodes; i++) {
+        c->parent[i] = parent_at(c, c->lattice + 3 * (i / 8), (int)(i % 8));
+        if (c->parent[i] < 0)
+            return err_set(e, NULL, 0, "nodes that are off the lattice of the elements");
+    }
+    return c->parent ? 0 : -1;
 }
 
 static int find_box(coarse *c, const int32_t *cells, int64_t count, err *e)
@@ -128,7 +131,7 @@ static int find_places(coarse *c, const model *m, int64_t *elements, int64_t *no
     mark_nodes(c);
     *elements = number_marked(c->cell, box);
     *nodes = number_marked(c->node, corners);
-    return has_parents(c) ? 0 : err_set(e, NULL, 0, "nodes that are off the lattice of the elements");
+    return find_parents(c, e);
 }
 
 /* ---- Its model */
@@ -221,26 +224,41 @@ static int make_model(coarse *c, const model *m, err *e)
 
 /* ---- Its script */
 
+/* Curves of 1 from time 0 on, for loads of its own. */
+static void add_own(coarse *c)
+{
+    script *s = &c->script;
+    c->own = s->curves;
+    for (int a = 0; a < 3; a++) {
+        s->time[s->keys] = 0;
+        s->value[3 * s->keys + a] = 1;
+        s->curve[s->curves++] = (script_curve){.verb = SCRIPT_FORCE,
+                                               .volume = -1,
+                                               .key_first = (int32_t)s->keys++,
+                                               .key_count = 1,
+                                               .from = SCRIPT_OF_FILE};
+    }
+}
+
 static int make_script(coarse *c, err *e)
 {
     const script *s = c->fine->script;
     c->script = *s;
-    c->script.curve = mem_array(s->curves, sizeof *s->curve, "the coarser model", e);
-    if (!c->script.curve)
+    c->script.curve = mem_array(s->curves + 3, sizeof *s->curve, "the coarser model", e);
+    c->script.time = mem_array(s->keys + 3, sizeof *s->time, "the coarser model", e);
+    c->script.value = mem_array(s->keys + 3, 3 * sizeof *s->value, "the coarser model", e);
+    if (!c->script.curve || !c->script.time || !c->script.value)
         return -1;
     memcpy(c->script.curve, s->curve, (size_t)s->curves * sizeof *s->curve);
+    memcpy(c->script.time, s->time, (size_t)s->keys * sizeof *s->time);
+    memcpy(c->script.value, s->value, (size_t)s->keys * 3 * sizeof *s->value);
     for (int64_t i = 0; i < s->curves; i++) {
         script_curve *curve = &c->script.curve[i];
         curve->node_count = curve->triangle_count = 0; /* what they push at is the loads' to say */
         curve->verb = curve->verb == SCRIPT_TRACTION ? SCRIPT_FORCE : curve->verb;
     }
+    add_own(c);
     return 0;
-}
-
-void coarse_parents(const coarse *c, int64_t n, int32_t parent[8])
-{
-    for (int v = 0; v < 8; v++)
-        parent[v] = parent_at(c, c->lattice + 3 * n, v);
 }
 
 coarse *coarse_make(const tled_problem *fine, const model *m, err *e)
@@ -265,9 +283,12 @@ void coarse_free(coarse *c)
         return;
     tled_problem_free(&c->problem);
     free(c->script.curve);
+    free(c->script.time);
+    free(c->script.value);
     model_free(&c->m);
     free(c->cell);
     free(c->node);
+    free(c->parent);
     free(c);
 }
 
@@ -304,6 +325,26 @@ static bool is_upright(const tled_problem *p, int64_t element, const double *u)
     return true;
 }
 
+bool coarse_is_upright(const coarse *c, const double *displacement)
+{
+    for (int64_t i = 0; i < c->fine->elements; i++)
+        if (!is_upright(c->fine, i, displacement))
+            return false;
+    return true;
+}
+
+/* Its mean over what a finer node lies between. */
+static void interpolate_node(const coarse *c, int64_t n, const double *from, double to[3])
+{
+    const int32_t *parent = coarse_parents(c, n);
+    for (int a = 0; a < 3; a++) {
+        double sum = 0;
+        for (int v = 0; v < 8; v++)
+            sum += from[3 * (int64_t)parent[v] + a];
+        to[a] = sum / 8;
+    }
+}
+
 int coarse_prolong(const coarse *c, const double *from, double time, double *to, err *e)
 {
     const tled_problem *p = c->fine;
@@ -312,21 +353,40 @@ int coarse_prolong(const coarse *c, const double *from, double time, double *to,
         return -1;
     tled_curves(p, time, value);
     for (int64_t n = 0; n < p->nodes; n++) {
-        int32_t parent[8];
-        coarse_parents(c, n, parent);
+        double at[3];
+        interpolate_node(c, n, from, at);
         for (int a = 0; a < 3; a++) {
             const int32_t hold = p->hold[3 * n + a];
-            double sum = 0;
-            for (int v = 0; v < 8; v++)
-                sum += from[3 * (int64_t)parent[v] + a];
-            to[3 * n + a] = hold == HOLD_FREE    ? sum / 8
+            to[3 * n + a] = hold == HOLD_FREE    ? at[a]
                             : hold == HOLD_STILL ? p->at_start.of[TLED_DISPLACEMENT][3 * n + a]
                                                  : moves_to(value, hold, a, p->position + 3 * n);
         }
     }
     free(value);
-    for (int64_t i = 0; i < p->elements; i++)
-        if (!is_upright(p, i, to))
-            return 1;
-    return 0;
+    return coarse_is_upright(c, to) ? 0 : 1;
+}
+
+void coarse_interpolate(const coarse *c, const double *from, double *to)
+{
+    for (int64_t n = 0; n < c->fine->nodes; n++) {
+        interpolate_node(c, n, from, to + 3 * n);
+        for (int a = 0; a < 3; a++)
+            if (c->fine->hold[3 * n + a] != HOLD_FREE)
+                to[3 * n + a] = 0;
+    }
+}
+
+void coarse_restrict(const coarse *c, const double *from, double *to)
+{
+    const int32_t *hold = c->problem.hold;
+    memset(to, 0, 3 * (size_t)c->problem.nodes * sizeof *to);
+    for (int64_t n = 0; n < c->fine->nodes; n++) {
+        const int32_t *parent = coarse_parents(c, n);
+        for (int v = 0; v < 8; v++)
+            for (int a = 0; a < 3; a++) {
+                const int64_t i = 3 * (int64_t)parent[v] + a;
+                if (c->fine->hold[3 * n + a] == HOLD_FREE && hold[i] == HOLD_FREE)
+                    to[i] += from[3 * n + a] / 8;
+            }
+    }
 }

@@ -8,9 +8,8 @@
 /* How many of the eighths of a finer node each coarser one has so far, from which its holds are; 8: it lies there. */
 static void take_holds(coarse *c, int64_t n, uint8_t *eighths)
 {
-    int32_t parent[8];
     const tled_problem *p = c->fine;
-    coarse_parents(c, n, parent);
+    const int32_t *parent = coarse_parents(c, n);
     for (int v = 0; v < 8; v++) {
         uint8_t same = 0;
         for (int w = 0; w < 8; w++)
@@ -73,10 +72,7 @@ static int64_t list_entries(const coarse *c, entry *list)
     const tled_problem *p = c->fine;
     int64_t count = 0, kept = 0;
     for (int64_t n = 0; n < p->nodes; n++) {
-        int32_t parent[8];
-        if (p->force_start[n] == p->force_start[n + 1])
-            continue;
-        coarse_parents(c, n, parent);
+        const int32_t *parent = coarse_parents(c, n);
         for (int32_t i = p->force_start[n]; i < p->force_start[n + 1]; i++)
             for (int v = 0; v < 8; v++, count++)
                 list[count] = (entry){parent[v], p->force_curve[i], p->force_spring[i], count, p->force_share[i] / 8};
@@ -90,27 +86,48 @@ static int64_t list_entries(const coarse *c, entry *list)
     return kept;
 }
 
+/* Room for forces of its own at each node, behind the others: the last three of a node's entries. */
+enum { OWN = 3 };
+
+static void fill_node(coarse *c, int64_t n, const entry *list, int64_t count)
+{
+    tled_problem *p = &c->problem;
+    const int32_t from = p->force_start[n];
+    for (int32_t i = 0; i < count + OWN; i++) {
+        const entry own = {.curve = (int32_t)(c->own + i - count), .spring = -1}, of = i < count ? list[i] : own;
+        p->force_curve[from + i] = of.curve;
+        p->force_spring[from + i] = of.spring;
+        p->force_share[from + i] = of.share;
+    }
+    p->force_start[n + 1] = (int32_t)(from + count + OWN);
+}
+
 int coarse_loads(coarse *c, err *e)
 {
     tled_problem *p = &c->problem;
     const int64_t most = 8 * (int64_t)c->fine->force_start[c->fine->nodes];
     entry *list = mem_array(most, sizeof *list, "the coarser model", e);
-    const int64_t count = list ? list_entries(c, list) : 0;
+    const int64_t count = list ? list_entries(c, list) : 0, all = count + OWN * p->nodes;
     free(p->force_curve);
     free(p->force_spring);
     free(p->force_share);
-    p->force_curve = mem_array(count, sizeof *p->force_curve, "the forces", e);
-    p->force_spring = mem_array(count, sizeof *p->force_spring, "the forces", e);
-    p->force_share = mem_array(count, sizeof *p->force_share, "the forces", e);
+    p->force_curve = mem_array(all, sizeof *p->force_curve, "the forces", e);
+    p->force_spring = mem_array(all, sizeof *p->force_spring, "the forces", e);
+    p->force_share = mem_array(all, sizeof *p->force_share, "the forces", e);
     const bool failed = !list || !p->force_curve || !p->force_spring || !p->force_share;
-    for (int64_t i = 0; i < count && !failed; i++) {
-        p->force_curve[i] = list[i].curve;
-        p->force_spring[i] = list[i].spring;
-        p->force_share[i] = list[i].share;
-        p->force_start[list[i].node + 1]++;
+    for (int64_t n = 0, at = 0, next; n < p->nodes && !failed; n++, at = next) {
+        for (next = at; next < count && list[next].node == n;)
+            next++;
+        fill_node(c, n, list + at, next - at);
     }
-    for (int64_t n = 0; n < p->nodes && !failed; n++)
-        p->force_start[n + 1] += p->force_start[n];
     free(list);
     return failed ? -1 : 0;
+}
+
+void coarse_push(coarse *c, const double *force)
+{
+    tled_problem *p = &c->problem;
+    for (int64_t n = 0; n < p->nodes; n++)
+        for (int a = 0; a < OWN; a++)
+            p->force_share[p->force_start[n + 1] - OWN + a] += force[3 * n + a];
 }

@@ -13,4 +13,8 @@ int coarse_holds(coarse *c, err *e);
  * have. -1 with e filled. */
 int coarse_loads(coarse *c, err *e);
 
+/* Adds to what pushes its nodes besides (N, nodes x 3), which is nothing to begin with. States that are made from then
+ * on have it. */
+void coarse_push(coarse *c, const double *force);
+
 #endif

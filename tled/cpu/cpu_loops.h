@@ -259,25 +259,7 @@ static int copy_out(const cpu_state *s, int where, number **to, err *e)
     return *to ? 0 : -1;
 }
 
-static int cpu_save(cpu_state *s, err *e)
-{
-    self_contact_forget(s->skin);
-    return copy_out(s, FIELDS_ALL, &s->saved, e);
-}
-
-static int cpu_restore(cpu_state *s, err *e)
-{
-    const number *at = s->saved;
-    (void)e;
-    self_contact_forget(s->skin);
-    for (int i = 0; i < s->p->fields.count; i++) {
-        const cpu_layout l = layout_of(s, i);
-        memcpy(s->field[i], at, (size_t)(l.columns * l.stride) * sizeof *at);
-        at += l.columns * l.stride;
-    }
-    s->spare_is_internal = false;
-    return 0;
-}
+#include "tled/cpu/cpu_saved.h"
 
 static int cpu_snapshot(cpu_state *s, int slot, err *e)
 {
@@ -561,8 +543,8 @@ static int cpu_crowded(cpu_state *s, int64_t *count, err *e)
 /* What both have. */
 #define CPU_FUNCTIONS                                                                                                  \
     .destroy = cpu_destroy, .step = cpu_step, .get = cpu_get, .save = cpu_save, .restore = cpu_restore,                \
-    .snapshot = cpu_snapshot, .fetch = cpu_fetch, .reload = cpu_reload, .bytes = cpu_bytes, .crowded = cpu_crowded,    \
-    .computed = cpu_computed
+    .put = cpu_put, .snapshot = cpu_snapshot, .fetch = cpu_fetch, .reload = cpu_reload, .bytes = cpu_bytes,            \
+    .crowded = cpu_crowded, .computed = cpu_computed
 
 enum { CPU_FEATURES = EXECUTOR_USUAL | EXECUTOR_CONTACT | EXECUTOR_FOLLOWERS };
 

@@ -1,6 +1,7 @@
 #include "tled/loop/run.h"
 
 #include "base/clock.h"
+#include "tled/loop/multigrid.h"
 #include "tled/loop/run_parts.h"
 #include "tled/loop/timeline.h"
 #include "tled/problem/collider.h"
@@ -13,6 +14,9 @@ enum {
     CHECKPOINTS = 60, /* seconds between them, by the clock */
     STUCK = 5000      /* steps, at least, without coming closer to rest, before a run fails */
 };
+
+/* Of the slowest motion that is damped critically between two corrections; see the diary of the benchmarks. */
+static const double SMOOTHED = 3;
 
 /* ---- What is decided at a check */
 
@@ -60,41 +64,42 @@ static bool is_stuck(const run *n)
     return since > (n->r->finer ? period : fmax(STUCK, 20 * period));
 }
 
-/* What is in the state, and the state of the other executor made of it. Where memory is short for both, one is at a
- * time. */
-static int take_over(run *n, field_values *values)
+/* Where memory is short for two states, one is at a time. */
+int run_go_on_from(run *n, const tled_executor *device, const field_values *values)
 {
     const run_setup *r = n->r;
-    if (fields_allocate(&r->p->fields, FIELDS_ALL, values, "the state to go on from", n->e))
-        return -1;
-    for (int i = 0; i < r->p->fields.count; i++)
-        if (n->device->get(n->state, i, values->of[i], n->e))
-            return -1;
-    n->device->destroy(n->state);
-    n->finer = *r->p;
-    n->finer.at_start = *values;
-    n->finer.start = run_now(n);
-    n->device = r->finer;
-    n->state = n->device->create(&n->finer, r->threads, n->e);
-    return n->state ? 0 : -1;
-}
-
-/* Goes on in double, at a check: all frames before are written by then. */
-static int refine(run *n)
-{
-    const run_setup *r = n->r;
-    field_values values = {{0}};
     frame_writer *writer = n->writer;
     n->writer = NULL;
     n->sent = 0;
-    const bool failed = frame_writer_close(writer, n->e) || take_over(n, &values);
-    n->finer.at_start = r->p->at_start;
+    if (frame_writer_close(writer, n->e))
+        return -1;
+    n->device->destroy(n->state);
+    n->moved = *r->p;
+    n->moved.at_start = *values;
+    n->moved.start = run_now(n);
+    n->device = device;
+    n->state = device->create(&n->moved, r->threads, n->e);
+    n->moved.at_start = r->p->at_start;
+    n->writer = n->state ? frame_writer_create(r->p, n->device, n->state, r->frame, r->last, r->context, n->e) : NULL;
+    return n->writer ? 0 : -1;
+}
+
+/* Goes on in double, at a check: all frames before are written by then. */
+int run_refine(run *n)
+{
+    const run_setup *r = n->r;
+    field_values values = {{0}};
+    int failed = fields_allocate(&r->p->fields, FIELDS_ALL, &values, "the state to go on from", n->e);
+    for (int i = 0; i < r->p->fields.count && !failed; i++)
+        failed = n->device->get(n->state, i, values.of[i], n->e);
+    failed = failed || run_go_on_from(n, r->finer, &values);
     fields_free(&values);
-    n->writer = failed ? NULL : frame_writer_create(r->p, n->device, n->state, r->frame, r->last, r->context, n->e);
-    if (!n->writer)
+    if (failed)
         return -1;
     if (r->refined)
         r->refined(r->context, run_now(n), n->course.closest);
+    if (r->coarser)
+        multigrid_refine(r->coarser);
     n->course.finer = 1;
     n->course.closest = INFINITY;
     return 0;
@@ -111,13 +116,22 @@ static double adapted(const run *n)
     return x->states > 1 && was > least ? fmin(wanted, least) : wanted;
 }
 
+/* Between corrections steps are to take away the fast motions alone, which coarser models do not have: critical for one
+ * that falls in that time by SMOOTHED of its radians. */
+static double smoothing(const run *n)
+{
+    return 2 * SMOOTHED * n->plan.rate / (double)n->check;
+}
+
 /* Estimates from the reading how the tissue moves, which sets the damping, and whether it is at rest. */
 static int judge_rest(run *n)
 {
     const run_setup *r = n->r;
+    if (run_corrects(n) && run_read_way(n))
+        return -1;
     relax_update(&n->course.relax, &n->monitor->reading);
     if (r->adapt)
-        n->course.damping = adapted(n);
+        n->course.damping = run_corrects(n) ? smoothing(n) : adapted(n);
     n->course.remaining = relax_share(&n->course.relax, &n->monitor->reading);
     n->rested = n->course.remaining <= r->rest;
     if (n->rested)
@@ -126,7 +140,7 @@ static int judge_rest(run *n)
     if (!is_stuck(n))
         return 0;
     if (r->finer)
-        return refine(n);
+        return run_refine(n);
     return err_set(n->e, NULL, 0,
                    "not at rest: single precision leaves %.3g of the displacement to go; expected at most %.3g, a "
                    "larger --rest, or --precision double",
@@ -148,7 +162,9 @@ static int decide(run *n)
     const int result = settles ? judge_rest(n) : 0;
     r->checked(r->context, n->plan.first - n->course.from, s, n->course.remaining, INT64_C(1) << n->course.cuts,
                n->course.damping);
-    return result;
+    if (result || !settles || n->rested || n->course.relax.states < 2 || !run_corrects(n))
+        return result;
+    return run_correct(n) ? -1 : 0;
 }
 
 /* ---- Checkpoints */
@@ -231,7 +247,7 @@ int run_begin(run *n)
 /* The next check, or the end. */
 static int64_t next_check(const run *n)
 {
-    const int64_t at = (n->plan.first / n->r->check + 1) * n->r->check;
+    const int64_t at = (n->plan.first / n->check + 1) * n->check;
     return at < n->last ? at : n->last;
 }
 
@@ -244,7 +260,7 @@ static int step_to_next_check(run *n)
     if (run_advance(n, to))
         return -1;
     const run_due due = run_due_now(n);
-    if (to % n->r->check == 0 && decide(n))
+    if (to % n->check == 0 && decide(n))
         return -1;
     if (run_log_sound(n, due.row))
         return -1;
@@ -293,7 +309,7 @@ static int make_monitor(run *n)
         return -1;
     if (r->rate_fixed)
         n->monitor->raise = 1;
-    n->monitor->differences = r->rest >= 0;
+    n->monitor->differences = r->rest >= 0 && !r->coarser;
     return 0;
 }
 
@@ -324,12 +340,17 @@ static int prepare(run *n)
 {
     const run_setup *r = n->r;
     n->slots = choose_slots(r);
+    n->check = r->check;
+    if (r->coarser && r->smooth)
+        n->check = r->smooth;
     if (make_monitor(n) || (r->log && log_begin(r->log, r->p, r->threads, n->e)))
         return -1;
     n->course.relax = relax_of(r->frequency, n->monitor->rest_step);
     if (r->point)
         resume_from(n, r->point);
     find_last(n);
+    if (r->coarser && run_corrector_make(n))
+        return -1;
     return make_state(n);
 }
 
@@ -338,6 +359,7 @@ static run_end end_of(const run *n)
 {
     run_end end = {.steps = n->plan.first - n->course.from,
                    .taken = n->course.taken,
+                   .corrections = run_corrections(n),
                    .parts = INT64_C(1) << n->cuts_told,
                    .rested = n->rested,
                    .remaining = n->course.remaining,
@@ -371,6 +393,8 @@ int run_by(const run_setup *r, const run_live *live, int (*by)(run *n), run_end 
              .e = e};
     n.course.from = n.course.closest_at = n.plan.first;
     int result = prepare(&n) ? -1 : by(&n);
+    if (!result && r->ended)
+        result = r->ended(r->context, n.device, n.state, run_now(&n), e);
     err later = {0}; /* the first is the one that is told */
     if (run_count_crowded(&n, result ? &later : e))
         result = -1;
@@ -380,6 +404,7 @@ int run_by(const run_setup *r, const run_live *live, int (*by)(run *n), run_end 
     if (n.state)
         n.device->destroy(n.state);
     monitor_destroy(n.monitor);
+    run_corrector_free(n.corrector);
     fields_free(&n.checkpoint);
     fields_free(&n.began);
     return result;

@@ -95,6 +95,8 @@ typedef struct run_setup {
     bool adapt;                 /* find the damping on the way, from the end of the script on */
     bool single;                /* numbers of single precision, which may come no closer to rest: then it goes on by: */
     const tled_executor *finer; /* in double; NULL: none can, so that it fails */
+    struct multigrid *coarser;  /* that correct it on the way to rest (multigrid.h), after their start; or NULL */
+    int64_t smooth;             /* with them: steps between checks, which correct; 0: as without */
     double every;               /* s: a frame at each multiple; 0: the last state only */
     bool first;                 /* and a frame of the state that the run begins from */
     run_log *log;           /* opened, or NULL: a row a check, or at each multiple of its interval, and at the end */
@@ -105,6 +107,8 @@ typedef struct run_setup {
      * run, at a frame soon after. */
     frame_writer_write *frame;
     frame_writer_last *last; /* of all frames that an executor gave; or NULL */
+    /* The last state, as a step or create led to it. -1 with e filled. Or NULL. */
+    int (*ended)(void *context, const tled_executor *device, tled_state *state, double time, err *e);
     /* After every check. remaining: see relax_share; cut: parts that each step is taken in from now on. */
     void (*checked)(void *context, int64_t step, const monitor_reading *reading, double remaining, int64_t cut,
                     double damping);
@@ -119,9 +123,10 @@ typedef struct run_setup {
 } run_setup;
 
 typedef struct run_end {
-    int64_t steps; /* taken, cuts not counted */
-    int64_t taken; /* each part of a cut step for itself, and those taken again */
-    int64_t parts; /* the most that a step was cut in, since the restart if there was one */
+    int64_t steps;   /* taken, cuts not counted */
+    int64_t taken;   /* each part of a cut step for itself, and those taken again */
+    int corrections; /* by coarser models */
+    int64_t parts;   /* the most that a step was cut in, since the restart if there was one */
     bool rested;
     double remaining;        /* with rest: at the last check */
     monitor_reading reading; /* of the last state */

@@ -8,11 +8,14 @@
 
 enum { CUTS_MAX = 10 }; /* a step cut 2^10 times is no step */
 
+typedef struct run_corrector run_corrector;
+
 typedef struct run {
     const run_setup *r;
     const run_live *live;        /* or NULL */
     const tled_executor *device; /* whose state is below: the setup's, or its `finer` */
-    tled_problem finer;          /* the setup's, to go on from where single precision came no closer to rest */
+    tled_problem moved;          /* the setup's, to go on from elsewhere: run_go_on_from */
+    run_corrector *corrector;    /* by coarser models; NULL: there are none */
     int64_t parts;               /* live: that each step is taken in */
     int went_back;               /* live: since the last sound check: to the one before, then to the beginning */
     field_values began;          /* live: the state that it began from; at rest when it is gone back to */
@@ -26,6 +29,7 @@ typedef struct run {
     int64_t last;        /* where it ends at the latest */
     bool is_last_short;  /* the step to there, which ends at r->end */
     bool rested;         /* at the last check: the run is over */
+    int64_t check;       /* steps between checks */
     int64_t saved_first; /* plan.first of the state that the device has saved: that at the last check */
     /* Frames are numbered, and a snapshot of each is in the slot of its number modulo `slots`: `sent` of them were
      * sent to the writer, then come those not yet known to be sound. */
@@ -88,6 +92,22 @@ int run_restore(run *n);
 
 /* Counts what the state has of crowded elements (run_end). -1 with e filled. */
 int run_count_crowded(run *n, err *e);
+
+/* Goes on from a state of these values, of all fields, where it stands, on this device, at a check: all frames before
+ * are written by then. */
+int run_go_on_from(run *n, const tled_executor *device, const field_values *values);
+
+/* Goes on in the setup's `finer`, at a check. */
+int run_refine(run *n);
+
+/* Corrections by coarser models (run_correct.c): whether more are to come; reads, at a check, the way since the last
+ * one into the monitor's reading; makes one, at a check that is not at rest, or gives up; and how many there were. */
+int run_corrector_make(run *n);
+void run_corrector_free(run_corrector *c);
+bool run_corrects(const run *n);
+int run_read_way(run *n);
+int run_correct(run *n);
+int run_corrections(const run *n);
 
 /* Live: as few parts as a step may safely be taken in, from the state that was monitored last. */
 void run_choose_parts(run *n);

@@ -49,6 +49,8 @@ typedef struct tled_executor {
      * that is made there. */
     int (*save)(tled_state *state, err *e);
     int (*restore)(tled_state *state, err *e);
+    /* Puts a state's fields to these values, at a time (s), as if it were made there. NULL: it has to be made anew. */
+    int (*put)(tled_state *state, const field_values *values, double time, err *e);
     /* Takes over what tled_problem_reload changed. 0; 1: it has no room for it, so the state has to be made again, as
      * it has where this is NULL. */
     int (*reload)(tled_state *state, err *e);

@@ -414,11 +414,16 @@ static int start_coarse(session *s, const struct options *o)
 {
     const bool shown = o->every > 0 || o->log, goes_on = o->restart || s->next_frame;
     const bool is_card = strcmp(s->run.device->is.device, "cpu") != 0;
-    coarse_told told = {0};
+    err none = {0};
     if (o->coarse || is_card || !s->run.adapt || o->dt > 0 || o->checkpoint || shown || goes_on)
         return 0;
-    s->coarse = !coarse_start(&s->run, &s->problem, &s->m, &told);
-    words_coarse(s, &told);
+    s->run.coarser = multigrid_make(&s->run, &s->problem, &s->m, 0, &none);
+    if (s->run.coarser && multigrid_start(s->run.coarser, &s->problem, &none)) {
+        multigrid_free(s->run.coarser);
+        s->run.coarser = NULL;
+    }
+    words_coarse(s, &none);
+    s->run.smooth = MULTIGRID_SMOOTH;
     return 0;
 }
 
@@ -427,8 +432,9 @@ static int run_anew(session *s, const struct options *o, run_end *end, err *e)
 {
     words_anew(s, e);
     *e = (err){0};
-    s->coarse = false;
-    coarse_forget(&s->problem);
+    multigrid_free(s->run.coarser);
+    s->run.coarser = NULL;
+    multigrid_forget(&s->problem);
     return choose_end(s, o, e) ? -1 : tled_batch_run(s, end, e);
 }
 
@@ -458,7 +464,7 @@ static int simulate(session *s, const struct options *o, const char *device, run
     progress_start(&s->progress, "tled-run", "steps", s->run.rest < 0 ? (double)s->run.steps : 0,
                    o->common.quiet || o->common.verbose);
     int result = s->live ? live_go(s, end, e) : tled_batch_run(s, end, e);
-    if (result && s->coarse && !s->next_frame)
+    if (result && s->run.coarser && !s->next_frame)
         result = run_anew(s, o, end, e);
     progress_stop(&s->progress);
     if (s->live)
@@ -508,6 +514,7 @@ static void end_session(session *s, tool *t, err *e)
     pool_destroy(s->threads);
     results_destroy(s->results);
     free(s->activation);
+    multigrid_free(s->run.coarser);
     folds_free(&s->folds);
     frame_choice_free(&s->frames);
     tled_problem_free(&s->problem);

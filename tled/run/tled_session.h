@@ -43,7 +43,6 @@ typedef struct session {
     progress progress;
     checkpoint *checkpoint; /* NULL: none */
     int64_t next_frame;     /* its index */
-    bool coarse;            /* it begins from the rest of a coarser model */
     card_gate *card;        /* of a batch, whose model is as it is to be; NULL: of none */
     bool started;           /* the state that the run begins from has been written: as a frame that came */
     int64_t cut;            /* parts of a step, as said last */

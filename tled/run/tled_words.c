@@ -35,7 +35,7 @@ void words_start(const session *s, const char *device, const struct options *o)
                  (long long)least, least == 1 ? "" : "s", CUT_LEAST, CUT_LEAST);
     tool_say(s->t, "stable step %.6g ms, dt %.6g ms, damping %.4g 1/s%s", 1e3 * s->stable,
              1e3 / r->rate / (double)live_parts(s->live), r->damping, r->adapt ? ", then adapted" : "");
-    if (!r->point && !s->coarse && p->start > 0 && p->start >= o->ramp && (o->contract.count || o->gravity.count))
+    if (!r->point && !r->coarser && p->start > 0 && p->start >= o->ramp && (o->contract.count || o->gravity.count))
         tool_say(s->t, "the run begins after the ramp of %g s: -c and -g act in full from the first step", o->ramp);
     if (s->live)
         tool_say(s->t, "from %.6g s, %.6g frames a second", p->start, o->rate > 0 ? o->rate : 60);
@@ -57,13 +57,14 @@ void words_refined(void *context, double time, double closest)
              time, closest);
 }
 
-void words_coarse(const session *s, const coarse_told *told)
+void words_coarse(const session *s, const err *none)
 {
-    if (s->coarse)
+    const multigrid_told told = s->run.coarser ? multigrid_tell(s->run.coarser) : (multigrid_told){0};
+    if (s->run.coarser)
         tool_detail(s->t, "the run begins from the rest of %d coarser model%s: %lld elements in all, %lld steps",
-                    told->models, told->models == 1 ? "" : "s", (long long)told->elements, (long long)told->steps);
+                    told.models, told.models == 1 ? "" : "s", (long long)told.elements, (long long)told.steps);
     else
-        tool_detail(s->t, "the run begins from no coarser model: %s", told->why);
+        tool_detail(s->t, "the run begins from no coarser model: %s", none->text);
 }
 
 void words_anew(const session *s, const err *e)
@@ -122,6 +123,11 @@ void words_end(session *s, const run_end *end)
     tool_say(s->t, "%s %.6g s, after %lld steps: kinetic energy %.3g J, largest displacement %.6g mm%s",
              end->rested ? "at rest at" : "at", w->time, (long long)(s->live ? end->taken : end->steps), w->kinetic,
              1e3 * w->largest, left);
+    if (s->run.coarser) {
+        const multigrid_told told = multigrid_tell(s->run.coarser);
+        tool_detail(s->t, "coarser models corrected it %d time%s; their %lld steps in all are worth %.0f of its own",
+                    end->corrections, end->corrections == 1 ? "" : "s", (long long)told.steps, told.work);
+    }
     words_folds(s, end, true);
     tool_detail(s->t, "%s: %.4g MB, %.4g bytes an element", s->run.device->is.device, 1e-6 * (double)end->bytes,
                 (double)end->bytes / (double)s->problem.elements);

@@ -3,7 +3,7 @@
 #ifndef SINEW_TLED_WORDS_H
 #define SINEW_TLED_WORDS_H
 
-#include "tled/loop/coarse_start.h"
+#include "tled/loop/multigrid.h"
 #include "tled/run/options.h"
 #include "tled/run/tled_session.h"
 
@@ -18,7 +18,7 @@ void words_refined(void *context, double time, double closest);
 
 /* With -v: what coarser models the run begins from, or why from none. Without: that such a run failed, and begins
  * again. */
-void words_coarse(const session *s, const coarse_told *told);
+void words_coarse(const session *s, const err *none);
 void words_anew(const session *s, const err *e);
 
 /* Of the frames that were written, whether the run came to its end or not. */
