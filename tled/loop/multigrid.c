@@ -107,7 +107,8 @@ static int make_arrays(multigrid *g, err *e)
 multigrid *multigrid_make(const run_setup *r, const tled_problem *p, const model *m, int64_t least, err *e)
 {
     err none = {0};
-    const char *lacks = p->elements < (least ? least : LEAST) ? "few elements" : coarse_lacks(p, m);
+    const int64_t at_least = least ? least : LEAST;
+    const char *lacks = p->elements < at_least ? "few elements" : coarse_lacks(p, m);
     if (lacks) {
         err_set(e, NULL, 0, "%s", lacks);
         return NULL;
