@@ -72,6 +72,14 @@ bar 42.5
 printf '0 force 0.08,0.015,0.015 0.03 0,0,0\n0.05 force 0.08,0.015,0.015 0.03 0.0005,0.0001,0\n' >"$T/script"
 both "pushed, of two materials" 1e-4 --rest 1e-5 --script "$T/script"
 
+# Its bend is slow, and coarser models have it.
+[ $((5 * $(steps begun))) -lt "$(steps direct)" ]
+is $? 0 "pushed, of two materials: five times fewer steps"
+grep -q 'coarser models corrected it [1-9]' "$T/begun.said"
+is $? 0 "and it says how often it was corrected"
+grep -q 'corrected' "$T/direct.said"
+is $? 1 "--coarse no: never"
+
 # What has no coarser model, or shows how it comes to rest, runs as without.
 rests begun --rest 1e-3 -g 1,0,0 --every 0.1
 rests direct --rest 1e-3 -g 1,0,0 --every 0.1 --coarse no
