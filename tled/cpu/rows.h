@@ -40,8 +40,8 @@ typedef struct rows_group {
     uint8_t count, stretches;
 } rows_group;
 
-/* What of one corner of a stretch goes to `lanes` nodes that follow each other: of the forces from `at` on, those in the
- * lanes whose bits are set. at: in numbers, of the first component; the others' are 8 lanes and 16 lanes behind. */
+/* What of one corner of a stretch goes to `lanes` nodes that follow each other: of the forces from `at` on, those in
+ * the lanes whose bits are set. at: in numbers, of the first component; the others' are 8 lanes and 16 lanes behind. */
 typedef struct rows_term {
     int32_t at;
     uint32_t bits;
