@@ -27,7 +27,7 @@ static void go_together(void *context, int64_t chunk, int64_t from, int64_t to)
 static void make_one_of_them(bench *b, int i, const tled_executor *twice, const tled_executor *once)
 {
     if (i < 4)
-        make(b, i % 2 ? &muscle : &lump, i % 2 ? .2 + .1 * i : 0, i % 2, i < 2 ? twice : once, 300);
+        make(b, i % 2 ? &muscle : &lump, i % 2 ? .2 + .1 * i : 0, i % 2 == 0, i < 2 ? twice : once, 300);
     else
         make(b, i == 4 ? &middle : &large, .3, false, once, 200);
 }

@@ -19,7 +19,7 @@ static const char *choice_usable(void)
  * it; freely: what is said of a free choice. */
 static inline void test_choice_without(const tled_problem *p, uint32_t feature, const char *words, const char *freely)
 {
-    const executor card = {"cuda", ~feature, ~(uint32_t)0, choice_usable, NULL};
+    const executor card = {.device = "cuda", .features = ~feature, .forms = ~(uint32_t)0, .unusable = choice_usable};
     const executor *const table[] = {&card, &tled_cpu_double.is, NULL};
     const executor_need need = tled_need(p);
     char says[300], refused[200];
