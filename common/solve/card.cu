@@ -77,39 +77,45 @@ typedef struct kept { /* of the card's memory, or of the host's */
     cudaError_t (*give)(void *);
 } kept;
 
-static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
-static bool is_shared; /* written with both locks, read with either */
-static kept of_card = {NULL, {}, 0, 0, 0, cudaFree}, of_host = {NULL, {}, 0, 0, 0, cudaFreeHost};
+/* One for the process, as its card is. */
+static struct {
+    pthread_mutex_t lock; /* of what is kept */
+    pthread_mutex_t turn; /* of kernels whose blocks wait for each other */
+    bool is_on;           /* written with both locks, read with either */
+    kept of_card, of_host;
+    cudaEvent_t turn_over; /* the last such kernel's; NULL: the card is not shared, or there was none */
+} shared = {PTHREAD_MUTEX_INITIALIZER,     PTHREAD_MUTEX_INITIALIZER,         false,
+            {NULL, {}, 0, 0, 0, cudaFree}, {NULL, {}, 0, 0, 0, cudaFreeHost}, NULL};
 
 /* A piece of that size, or NULL. */
 static void *kept_take(kept *k, int64_t bytes)
 {
     void *at = NULL;
-    pthread_mutex_lock(&lock);
+    pthread_mutex_lock(&shared.lock);
     for (int i = 0; i < k->frees && !at; i++)
         if (k->free[i].bytes == bytes) {
             at = k->free[i].at;
             k->free[i] = k->free[--k->frees];
         }
-    pthread_mutex_unlock(&lock);
+    pthread_mutex_unlock(&shared.lock);
     return at;
 }
 
 /* What is in use is noted, where the card is shared. -1 with e filled. */
 static int kept_note(kept *k, void *at, int64_t bytes, err *e)
 {
-    pthread_mutex_lock(&lock);
-    const int failed = is_shared && MEM_ROOM(&k->used, &k->room, k->useds + 1, "the card's memory", e);
-    if (is_shared && !failed)
+    pthread_mutex_lock(&shared.lock);
+    const int failed = shared.is_on && MEM_ROOM(&k->used, &k->room, k->useds + 1, "the card's memory", e);
+    if (shared.is_on && !failed)
         k->used[k->useds++] = {at, bytes};
-    pthread_mutex_unlock(&lock);
+    pthread_mutex_unlock(&shared.lock);
     return failed ? -1 : 0;
 }
 
 static void kept_give(kept *k, void *at)
 {
     bool stays = false;
-    pthread_mutex_lock(&lock);
+    pthread_mutex_lock(&shared.lock);
     for (int64_t i = 0; i < k->useds; i++)
         if (k->used[i].at == at) {
             stays = k->frees < KEPT;
@@ -118,7 +124,7 @@ static void kept_give(kept *k, void *at)
             k->used[i] = k->used[--k->useds];
             break;
         }
-    pthread_mutex_unlock(&lock);
+    pthread_mutex_unlock(&shared.lock);
     if (!stays)
         k->give(at);
 }
@@ -126,11 +132,11 @@ static void kept_give(kept *k, void *at)
 /* Gives back to the driver all that is not in use, and tells whether there was any. */
 static bool kept_clear(kept *k)
 {
-    pthread_mutex_lock(&lock);
+    pthread_mutex_lock(&shared.lock);
     const bool any = k->frees > 0;
     while (k->frees > 0)
         k->give(k->free[--k->frees].at);
-    pthread_mutex_unlock(&lock);
+    pthread_mutex_unlock(&shared.lock);
     return any;
 }
 
@@ -145,9 +151,9 @@ static cudaError_t take_new(int64_t bytes, size_t *left, size_t *all, void **mem
 void *card_take(int64_t bytes, const char *what, err *e)
 {
     size_t left = 0, all = 0;
-    void *memory = kept_take(&of_card, bytes);
+    void *memory = kept_take(&shared.of_card, bytes);
     cudaError_t code = memory ? cudaSuccess : take_new(bytes, &left, &all, &memory);
-    if (code == cudaErrorMemoryAllocation && kept_clear(&of_card)) {
+    if (code == cudaErrorMemoryAllocation && kept_clear(&shared.of_card)) {
         cudaGetLastError();
         code = take_new(bytes, &left, &all, &memory);
     }
@@ -160,7 +166,7 @@ void *card_take(int64_t bytes, const char *what, err *e)
     }
     if (card_check(code, "cudaMalloc", -1, e))
         return NULL;
-    if (!kept_note(&of_card, memory, bytes, e))
+    if (!kept_note(&shared.of_card, memory, bytes, e))
         return memory;
     cudaFree(memory);
     return NULL;
@@ -169,15 +175,15 @@ void *card_take(int64_t bytes, const char *what, err *e)
 void card_give(void *memory)
 {
     if (memory)
-        kept_give(&of_card, memory);
+        kept_give(&shared.of_card, memory);
 }
 
 void *card_host_take(int64_t bytes, err *e)
 {
-    void *memory = kept_take(&of_host, bytes);
+    void *memory = kept_take(&shared.of_host, bytes);
     if (!memory && card_check(cudaMallocHost(&memory, (size_t)bytes), "cudaMallocHost", -1, e))
         return NULL;
-    if (!kept_note(&of_host, memory, bytes, e))
+    if (!kept_note(&shared.of_host, memory, bytes, e))
         return memory;
     cudaFreeHost(memory);
     return NULL;
@@ -186,35 +192,32 @@ void *card_host_take(int64_t bytes, err *e)
 void card_host_give(void *memory)
 {
     if (memory)
-        kept_give(&of_host, memory);
+        kept_give(&shared.of_host, memory);
 }
 
 /* ---- Kernels whose blocks wait for each other */
 
-static pthread_mutex_t turn = PTHREAD_MUTEX_INITIALIZER;
-static cudaEvent_t turn_over; /* the last such kernel's; NULL: the card is not shared, or there was none */
-
 void card_share(void)
 {
-    pthread_mutex_lock(&turn);
-    pthread_mutex_lock(&lock);
-    is_shared = true;
-    pthread_mutex_unlock(&lock);
-    pthread_mutex_unlock(&turn);
+    pthread_mutex_lock(&shared.turn);
+    pthread_mutex_lock(&shared.lock);
+    shared.is_on = true;
+    pthread_mutex_unlock(&shared.lock);
+    pthread_mutex_unlock(&shared.turn);
 }
 
 int card_turn_begin(void *stream)
 {
-    pthread_mutex_lock(&turn);
-    if (!is_shared)
+    pthread_mutex_lock(&shared.turn);
+    if (!shared.is_on)
         return cudaSuccess;
-    return turn_over ? cudaStreamWaitEvent((cudaStream_t)stream, turn_over, 0)
-                     : cudaEventCreateWithFlags(&turn_over, cudaEventDisableTiming);
+    return shared.turn_over ? cudaStreamWaitEvent((cudaStream_t)stream, shared.turn_over, 0)
+                            : cudaEventCreateWithFlags(&shared.turn_over, cudaEventDisableTiming);
 }
 
 int card_turn_end(void *stream)
 {
-    const cudaError_t code = turn_over ? cudaEventRecord(turn_over, (cudaStream_t)stream) : cudaSuccess;
-    pthread_mutex_unlock(&turn);
+    const cudaError_t code = shared.turn_over ? cudaEventRecord(shared.turn_over, (cudaStream_t)stream) : cudaSuccess;
+    pthread_mutex_unlock(&shared.turn);
     return code;
 }

@@ -88,6 +88,7 @@ a message|uses stderr|extern void *stderr; int fputc(int, void *); void g(void *
 a print|uses puts|int puts(const char *); void f(void); void f(void) { puts("x"); }
 a variable|has the writable global count|int count = 1; int f(void); int f(void) { return ++count; }
 a zeroed one|has the writable global count|static int count; int f(void); int f(void) { return ++count; }
+a pointer|has the writable global at|static const char *at = "a"; const char *f(const char *); const char *f(const char *b) { const char *was = at; at = b; return was; }
 a thread's|has the writable global count|static _Thread_local int count = 2; int f(void); int f(void) { return ++count; }
 a shell|calls system|int system(const char *); void f(void); void f(void) { system("ls"); }
 another program|calls execvp|int execvp(const char *, char *const *); void f(char **a); void f(char **a) { execvp(a[0], a); }
@@ -105,7 +106,7 @@ END
     rm common/base/bad.c
     found "no object at all" objects 'none in '
 else
-    skip 13 "no compiler or no nm"
+    skip 14 "no compiler or no nm"
 fi
 cd "$ROOT" || exit 1
 
