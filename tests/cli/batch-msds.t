@@ -121,7 +121,7 @@ for option in '-o x' --live '--record x' '--control x' '--replay x' --force '--h
     msds-run -q $option --batch jobs.txt <block >out 2>said
     is "$? $(grep -c -- "${option%% *} with --batch; expected" said)" "2 1" "$option with --batch is refused"
 done
-$run --batch - <block 2>said
+$run --batch - <block >out 2>said
 like "$? $(cat said)" "2 .*--batch -: standard input has the model" "jobs on standard input too"
 # What springs cannot bear, whose steps are fixed.
 printf -- '--poses a.tum -o calm\n--poses a.tum --method msds --mass lumped --dt 1 -o torn\n' >jobs.txt
